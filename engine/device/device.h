@@ -1,0 +1,73 @@
+// OpenCL devices: which there are, choosing one, and the queue its kernels run on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/device/launch_record.h"
+#include "engine/device/memory.h"
+
+namespace sahl {
+
+struct DeviceInfo {
+    int index = 0;  ///< as printed by `sahl devices` and taken by --device
+    std::string name;
+    std::string platform;
+    std::string vendor;
+    std::string version;         ///< CL_DEVICE_VERSION
+    std::string driver;          ///< CL_DRIVER_VERSION
+    bool is_cpu = false;
+    bool is_pocl = false;
+    int compute_units = 0;
+    std::size_t global_memory = 0;    ///< bytes, as the driver says
+    std::size_t max_allocation = 0;   ///< bytes of one buffer
+};
+
+struct DeviceOptions {
+    std::string selector;  ///< empty: PoCL's CPU; digits: an index; else part of a name
+    int threads = 0;       ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
+};
+
+/// All OpenCL devices in platform order.
+/// Throws Error(device) with the package to install when there is no platform or no device.
+std::vector<DeviceInfo> list_devices(int threads = 0);
+
+/// An opened device: context, in-order profiling queue, memory accountant and launch records.
+/// Not copyable, not movable: buffers and kernels refer to it.
+class Device {
+public:
+    /// Throws Error(device) when nothing matches, or when several do (it lists them).
+    explicit Device(const DeviceOptions& options = {});
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const;
+    /// Buffers live in our own memory and mapping copies nothing.
+    bool zero_copy() const;
+    /// Work-items of a work-group: one for each launch of this device, so that PoCL compiles
+    /// each kernel once.
+    std::size_t local_size() const;
+    /// Rays that one work-item handles one after the other (SAHL_RAYS_PER_ITEM in the kernels).
+    std::uint32_t rays_per_item() const;
+
+    MemoryAccountant& memory();
+    LaunchLog& launches();
+
+    /// Hands queued commands to the driver without waiting.
+    void flush();
+    /// Waits until all queued commands have run.
+    void finish();
+
+    struct Impl;  ///< the OpenCL handles, for engine/device alone
+    Impl& impl();
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sahl

@@ -1,0 +1,53 @@
+// The film: where weighted contributions of all generations add up. Sums are signed Q31.32 fixed
+// point, so they do not depend on the order of addition.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/device/memory.h"
+
+namespace sahl {
+
+/// Linear colour, row-major from the top left, `channels` interleaved floats a pixel.
+struct Image {
+    int width = 0;
+    int height = 0;
+    int channels = 3;
+    std::vector<float> pixels;
+};
+
+class Film {
+public:
+    /// Largest magnitude of one contribution; larger ones are clamped and counted.
+    static constexpr float max_contribution = 131072.0F;
+
+    /// Throws Error(memory) when there is no room for 24 bytes a pixel.
+    Film(MemoryAccountant& accountant, int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// Adds contribution i (red[i], green[i], blue[i]) to pixel pixels[i] (row-major index).
+    /// A non-finite channel value adds 0 and is counted, one beyond ±max_contribution is clamped
+    /// and counted.
+    void add(std::span<const std::uint32_t> pixels, const float* red, const float* green, const float* blue);
+
+    /// The sums divided by `samples` (a pixel).
+    Image resolve(int samples) const;
+
+    std::uint64_t non_finite_count() const { return non_finite_; }
+    std::uint64_t clamped_count() const { return clamped_; }
+
+private:
+    int width_;
+    int height_;
+    HostMemory memory_;
+    std::span<std::int64_t> sums_;  ///< 3 a pixel
+    std::uint64_t non_finite_ = 0;
+    std::uint64_t clamped_ = 0;
+};
+
+}  // namespace sahl

@@ -1,0 +1,65 @@
+// Renders a scene on a device: the engine's front door.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/accel/bvh.h"
+#include "engine/device/device.h"
+#include "engine/film/film.h"
+#include "engine/scene/scene.h"
+
+namespace sahl {
+
+/// Pixels x0 <= x < x1, y0 <= y < y1 of the image, y down.
+struct Crop {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+struct RenderSettings {
+    Resolution resolution;
+    int depth = 5;          ///< generations after the camera ray; 0 is ray casting
+    int spp = 1;            ///< samples a pixel, 1..16384; 1 samples the pixel's centre
+    std::uint64_t seed = 0;
+    std::optional<Crop> crop;  ///< none: the whole image
+    /// Rays of a batch. Does not change the image: what does not fit waits.
+    std::uint32_t ray_budget = 1u << 17;
+};
+
+/// Rays that were traced in one bounce generation, over all waves.
+struct GenerationCounts {
+    std::uint64_t rays = 0;
+    std::uint64_t shadow_rays = 0;
+};
+
+struct RenderStatistics {
+    std::vector<GenerationCounts> generations;  ///< [0]: camera rays
+    double seconds = 0;                         ///< from the first launch to the last contribution
+};
+
+/// Called with the camera samples finished so far and their whole number, after each wave.
+using ProgressCallback = std::function<void(std::uint64_t done, std::uint64_t total)>;
+
+/// A scene made ready for a device: lowered, its BVH built, uploaded, kernels compiled.
+class Renderer {
+public:
+    /// Throws Error(scene) for what the loaders cannot see (no primitive limit exceeded, finite
+    /// bounds), Error(device) and Error(memory) from below. `device` must outlive the renderer.
+    Renderer(Device& device, const Scene& scene);
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+
+    const BvhStatistics& bvh_statistics() const;
+
+    /// Adds the image of `settings` into `film` (of the crop's size).
+    RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {});
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sahl

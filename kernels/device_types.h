@@ -1,0 +1,209 @@
+// The structs that the host fills and the kernels read: the only header that C++ and OpenCL C
+// share. 32-bit scalars only; sizes are asserted on both sides and offsets checked by a test.
+#ifndef SAHL_DEVICE_TYPES_H
+#define SAHL_DEVICE_TYPES_H
+
+#ifdef __OPENCL_VERSION__
+#define SAHL_STATIC_ASSERT(condition, text) _Static_assert(condition, text)
+typedef uint sahl_uint;
+#else
+#include <cstdint>
+#define SAHL_STATIC_ASSERT(condition, text) static_assert(condition, text)
+namespace sahl::device {
+using sahl_uint = std::uint32_t;
+#endif
+
+// ---- Acceleration structure -------------------------------------------------------------
+
+// Kinds of leaf blocks. A sphere whose transform is no similarity is an ellipsoid; a cylinder is
+// a cone of slope 0.
+#define SAHL_KIND_TRIANGLE 0u
+#define SAHL_KIND_SPHERE 1u
+#define SAHL_KIND_ELLIPSOID 2u
+#define SAHL_KIND_CONE 3u
+#define SAHL_KIND_POLYGON 4u
+
+// A child reference is a node's index, or a leaf: SAHL_CHILD_LEAF | kind << SAHL_CHILD_KIND_SHIFT
+// | offset of its one block in the leaf buffer, in lines of 64 bytes.
+#define SAHL_CHILD_LEAF 0x80000000u
+#define SAHL_CHILD_KIND_SHIFT 28u
+#define SAHL_CHILD_KIND_MASK 7u
+#define SAHL_CHILD_OFFSET_MASK 0x0fffffffu
+#define SAHL_LEAF_LINE_BYTES 64u
+#define SAHL_BLOCK_WIDTH 4u
+
+// Deepest path in binary splits; an 8-wide path is never longer. A traversal stack holds at most
+// 7 waiting siblings a level, the root and one node's overhang.
+#define SAHL_MAX_TREE_DEPTH 42u
+#define SAHL_STACK_SIZE 304u
+
+// An id in a block: the primitive's index in Scene::primitives with flags. SAHL_ID_BIAS keeps the
+// word, read as a float beside the vertices, from being a denormal.
+#define SAHL_ID_BIAS 0x40000000u
+#define SAHL_ID_TRANSPARENT 0x08000000u
+#define SAHL_ID_INSIDE_ONLY 0x10000000u
+#define SAHL_ID_MASK 0x07ffffffu
+#define SAHL_NO_PRIMITIVE 0x07ffffffu
+#define SAHL_MAX_PRIMITIVES 0x07fffff0u
+
+// Eight children as structure of arrays, read as float8. Children sit in slots so that visiting
+// `slot ^ octant` (bit k of octant: direction component k negative) is front to back. An empty
+// slot has lo = +INFINITY, hi = -INFINITY.
+typedef struct {
+    float lo_x[8], lo_y[8], lo_z[8];
+    float hi_x[8], hi_y[8], hi_z[8];
+    sahl_uint child[8];
+    sahl_uint spare[8];
+} BvhNode;
+SAHL_STATIC_ASSERT(sizeof(BvhNode) == 256, "BvhNode is four cache lines");
+
+// Four triangles; an axis is one line: vertex 0 of the four, vertex 1, vertex 2, a spare, which
+// holds the ids for x and 1.0f for y and z. Unused lanes have NaN vertices.
+typedef struct {
+    float x[12];
+    sahl_uint id[4];
+    float y[12];
+    float spare_y[4];
+    float z[12];
+    float spare_z[4];
+} TriangleBlock;
+SAHL_STATIC_ASSERT(sizeof(TriangleBlock) == 192, "TriangleBlock is three lines");
+
+// Four spheres. Unused lanes have a NaN radius.
+typedef struct {
+    float x[4], y[4], z[4];
+    float radius[4];
+    sahl_uint id[4];
+    sahl_uint spare[12];
+} SphereBlock;
+SAHL_STATIC_ASSERT(sizeof(SphereBlock) == 128, "SphereBlock is two lines");
+
+// Four quadrics in their object spaces, p = m (world - origin): the unit sphere for ellipsoids;
+// for cones the surface x² + y² = (1 + slope z)², 0 <= z <= 1. m is row-major. Unused lanes have
+// NaN in m.
+typedef struct {
+    float m[9][4];
+    float x[4], y[4], z[4];
+    float slope[4];
+    sahl_uint id[4];
+    sahl_uint spare[8];
+} QuadricBlock;
+SAHL_STATIC_ASSERT(sizeof(QuadricBlock) == 256, "QuadricBlock is four lines");
+
+// Four polygons: unit normal and a point of the plane, and a range of the polygon vertices
+// (counted in vertices). Unused lanes have a NaN normal and no vertices.
+typedef struct {
+    float normal_x[4], normal_y[4], normal_z[4];
+    float x[4], y[4], z[4];
+    sahl_uint first_vertex[4];
+    sahl_uint vertex_count[4];
+    sahl_uint id[4];
+    sahl_uint spare[12];
+} PolygonBlock;
+SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
+
+// ---- Shading ----------------------------------------------------------------------------
+
+// What shading looks up by primitive id. `data` is an offset (in floats) into the shape data:
+//   triangle   vertices 0..2; if smooth also normals 0..2
+//   sphere     centre, radius
+//   ellipsoid  m (9), origin
+//   cone       m (9), origin, slope
+//   polygon    unit normal, a point
+#define SAHL_PRIMITIVE_SMOOTH 1u
+typedef struct {
+    sahl_uint kind;
+    sahl_uint material;
+    sahl_uint data;
+    sahl_uint flags;
+} DevicePrimitive;
+SAHL_STATIC_ASSERT(sizeof(DevicePrimitive) == 16, "DevicePrimitive is 16 bytes");
+
+#define SAHL_MATERIAL_TWO_SIDED 1u
+#define SAHL_MATERIAL_BLINN 2u
+#define SAHL_MATERIAL_REFLECTS 4u
+#define SAHL_MATERIAL_TRANSMITS 8u
+typedef struct {
+    float emitted[3];  // ambient + emission
+    float shininess;
+    float diffuse[3];
+    float ior;
+    float specular[3];
+    sahl_uint flags;
+    float reflection[3];
+    float spare0;
+    float transmission[3];
+    float spare1;
+} DeviceMaterial;
+SAHL_STATIC_ASSERT(sizeof(DeviceMaterial) == 80, "DeviceMaterial is 80 bytes");
+
+#define SAHL_LIGHT_POINT 0u
+#define SAHL_LIGHT_DIRECTIONAL 1u
+typedef struct {
+    float position[3];  // or the unit vector towards a directional light
+    sahl_uint kind;
+    float color[3];
+    float spare0;
+    float attenuation[3];
+    float spare1;
+} DeviceLight;
+SAHL_STATIC_ASSERT(sizeof(DeviceLight) == 48, "DeviceLight is 48 bytes");
+
+typedef struct {
+    float background[3];
+    float extent;  // largest |coordinate| of the scene's bounds and eye
+    sahl_uint light_count;
+    sahl_uint any_transparent;
+    sahl_uint spare[2];
+} SceneConstants;
+SAHL_STATIC_ASSERT(sizeof(SceneConstants) == 32, "SceneConstants is 32 bytes");
+
+// ---- Waves ------------------------------------------------------------------------------
+
+// A camera ray through image position (x, y), pixels, y down:
+// eye, normalize(forward + step_x (x - width/2) + step_y (y - height/2)).
+typedef struct {
+    float eye[3];
+    float half_width;  // in pixels
+    float forward[3];
+    float half_height;
+    float step_x[3];
+    float spare0;
+    float step_y[3];
+    float spare1;
+} CameraConstants;
+SAHL_STATIC_ASSERT(sizeof(CameraConstants) == 64, "CameraConstants is 64 bytes");
+
+// Which camera samples a wave generates: `count` of them from number `first` (low and high word)
+// on, counted pixel by pixel in the crop's tile order, `spp` a pixel.
+typedef struct {
+    sahl_uint first_low, first_high;
+    sahl_uint count;
+    sahl_uint spp;
+    sahl_uint crop_x, crop_y, crop_width, crop_height;
+    sahl_uint seed_low, seed_high;
+    sahl_uint spare[2];
+} WaveConstants;
+SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
+
+// Arrays of a ray batch, each `capacity` long, one after the other: SAHL_RAY_FLOATS float arrays
+// in one buffer, SAHL_RAY_UINTS uint arrays in another.
+#define SAHL_RAY_ORIGIN 0
+#define SAHL_RAY_DIRECTION 3
+#define SAHL_RAY_WEIGHT 6
+#define SAHL_RAY_FLOATS 9
+#define SAHL_RAY_PIXEL 0    // index in the film
+#define SAHL_RAY_EXCLUDE 1  // the primitive it starts on, or SAHL_NO_PRIMITIVE
+#define SAHL_RAY_UINTS 2
+
+// Hits: t, u, v in one buffer; the primitive or SAHL_NO_PRIMITIVE in another.
+#define SAHL_HIT_T 0
+#define SAHL_HIT_U 1
+#define SAHL_HIT_V 2
+#define SAHL_HIT_FLOATS 3
+
+#ifndef __OPENCL_VERSION__
+}  // namespace sahl::device
+#endif
+
+#endif
