@@ -11,7 +11,7 @@
 #include <csignal>
 #include <system_error>
 
-namespace sahl::test {
+namespace sahl::tests {
 
 namespace {
 
@@ -143,4 +143,4 @@ ProcessResult run_process(const std::vector<std::string>& command, const Process
     return result;
 }
 
-}  // namespace sahl::test
+}  // namespace sahl::tests

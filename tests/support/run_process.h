@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace sahl::test {
+namespace sahl::tests {
 
 struct ProcessOptions {
     /// Set for the child on top of this process's environment; no value: unset.
@@ -33,4 +33,4 @@ struct ProcessResult {
 /// Throws std::system_error when it cannot be started.
 ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options = {});
 
-}  // namespace sahl::test
+}  // namespace sahl::tests
