@@ -1,0 +1,10 @@
+// Sahl's public interface: load or build a Scene, open a Device, make a Renderer, render into a Film, write
+// the image. Everything throws sahl::Error.
+#pragma once
+
+#include "engine/core/error.h"
+#include "engine/device/device.h"
+#include "engine/film/film.h"
+#include "engine/render/renderer.h"
+#include "engine/scene/load.h"
+#include "engine/scene/scene.h"
