@@ -3,6 +3,9 @@
 #pragma once
 
 #include "engine/core/error.h"
+#include "engine/core/log.h"
+#include "engine/core/nearest.h"
+#include "engine/core/progress.h"
 #include "engine/device/device.h"
 #include "engine/film/film.h"
 #include "engine/render/renderer.h"
