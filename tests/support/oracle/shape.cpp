@@ -168,7 +168,7 @@ Crossings Shape::cross_triangle(const Ray& ray) const {
     const dvec3 point = ray.origin + t * ray.direction;
     const dvec3 whole = glm::cross(points_[1] - points_[0], points_[2] - points_[0]);
     double barycentrics[3];
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
         const dvec3 part = glm::cross(points_[(i + 1) % 3] - point, points_[(i + 2) % 3] - point);
         barycentrics[i] = glm::dot(part, whole) / glm::dot(whole, whole);
     }
