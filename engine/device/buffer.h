@@ -13,7 +13,7 @@ namespace sahl {
 
 enum class MapMode { read, write, read_write };
 
-/// The host's view of a buffer while it lives; unmapped at destruction. Move-only.
+/// The host's view of a buffer, unmapped at destruction. Must not outlive the buffer. Move-only.
 template <class T>
 class Mapping;
 
@@ -56,12 +56,13 @@ public:
 
 private:
     struct Mapped {
-        void* pointer;
-        void* event;  ///< owned; cl_event behind
+        void* pointer = nullptr;
+        void* event = nullptr;  ///< owned; cl_event behind
     };
     Mapped map_bytes(MapMode mode, std::size_t bytes);
     static void wait_and_release(void* event);
-    void unmap(void* pointer);
+    static void unmap(Impl& impl, Mapped mapped) noexcept;
+    void check_range(std::size_t bytes, const char* action) const;
     template <class T>
     friend class Mapping;
 
@@ -72,14 +73,12 @@ template <class T>
 class Mapping {
 public:
     Mapping(Buffer& buffer, MapMode mode, std::size_t count)
-        : buffer_(&buffer), mapped_(buffer.map_bytes(mode, count * sizeof(T))), count_(count) {}
+        : owner_(buffer.impl()), mapped_(buffer.map_bytes(mode, count * sizeof(T))), count_(count) {}
     ~Mapping() {
-        if (buffer_ == nullptr) return;
-        wait();
-        buffer_->unmap(mapped_.pointer);
+        if (owner_ != nullptr) Buffer::unmap(*owner_, mapped_);
     }
     Mapping(Mapping&& other) noexcept
-        : buffer_(std::exchange(other.buffer_, nullptr)),
+        : owner_(std::exchange(other.owner_, nullptr)),
           mapped_{other.mapped_.pointer, std::exchange(other.mapped_.event, nullptr)},
           count_(other.count_) {}
     Mapping(const Mapping&) = delete;
@@ -98,7 +97,7 @@ public:
     T* end() const { return data() + count_; }
 
 private:
-    Buffer* buffer_;
+    Buffer::Impl* owner_;
     Buffer::Mapped mapped_;
     std::size_t count_;
 };

@@ -18,18 +18,18 @@ struct DeviceInfo {
     std::string name;
     std::string platform;
     std::string vendor;
-    std::string version;         ///< CL_DEVICE_VERSION
-    std::string driver;          ///< CL_DRIVER_VERSION
+    std::string version;  ///< CL_DEVICE_VERSION
+    std::string driver;   ///< CL_DRIVER_VERSION
     bool is_cpu = false;
     bool is_pocl = false;
     int compute_units = 0;
-    std::size_t global_memory = 0;    ///< bytes, as the driver says
-    std::size_t max_allocation = 0;   ///< bytes of one buffer
+    std::size_t global_memory = 0;   ///< bytes, as the driver says
+    std::size_t max_allocation = 0;  ///< bytes of one buffer
 };
 
 struct DeviceOptions {
     std::string selector;  ///< empty: PoCL's CPU; digits: an index; else part of a name
-    int threads = 0;       ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
+    int threads = 0;  ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
 };
 
 /// All OpenCL devices in platform order.
@@ -54,6 +54,9 @@ public:
     std::size_t local_size() const;
     /// Rays that one work-item handles one after the other (SAHL_RAYS_PER_ITEM in the kernels).
     std::uint32_t rays_per_item() const;
+
+    /// Most work-items of one launch. PoCL compiles a kernel once more for grids beyond it.
+    std::size_t max_work_items() const;
 
     MemoryAccountant& memory();
     LaunchLog& launches();

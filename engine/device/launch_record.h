@@ -19,13 +19,16 @@ struct LaunchRecord {
     std::uint64_t ended_ns = 0;
 };
 
-/// Collects the events of named launches.
+/// Collects the events of named launches while it is enabled. It starts disabled: an event that
+/// nobody takes would be memory that grows with every launch.
 class LaunchLog {
 public:
     LaunchLog();
     ~LaunchLog();
 
-    /// Records of all launches since the last call, in launch order. Waits for the last of them.
+    void enable(bool on);
+
+    /// Records of all recorded launches since the last call, in launch order. Waits for the last of them.
     std::vector<LaunchRecord> take();
 
     struct Impl;  ///< for engine/device alone

@@ -17,13 +17,14 @@ class Program;
 
 /// One launch: how many work-items, and what its record says.
 struct Launch {
-    std::size_t work_items = 0;  ///< rounded up to whole work-groups; 0 launches nothing
+    std::size_t work_items =
+        0;  ///< rounded up to whole work-groups; at most Device::max_work_items(); 0: no launch
     std::uint32_t generation = 0;
     std::uint64_t items = 0;  ///< rays or slots worked on, for the record
 };
 
 /// A kernel of a program. Arguments are buffers or trivially copyable values (shared structs,
-/// 32-bit scalars) in the order of the kernel's parameters.
+/// 32-bit scalars) in the order of the kernel's parameters. Keeps its program alive.
 class Kernel {
 public:
     ~Kernel();
@@ -53,13 +54,14 @@ private:
     }
     void set_buffer(std::uint32_t index, const Buffer& buffer);
     void set_value(std::uint32_t index, const void* value, std::size_t bytes);
-    /// Throws Error(internal) when `argument_count` is not the kernel's.
+    /// Throws Error(internal) when `argument_count` is not the kernel's or the items are too many.
     void enqueue(const Launch& launch, std::uint32_t argument_count);
 
     std::unique_ptr<Impl> impl_;
 };
 
-/// A built OpenCL program: files of kernels/ one after the other, includes expanded.
+/// A built OpenCL program: files of kernels/ one after the other, includes expanded. The kernels
+/// see SAHL_RAYS_PER_ITEM, the device's rays_per_item().
 /// Binaries come from and go to the program cache (program_cache.h).
 class Program {
 public:
@@ -75,11 +77,19 @@ public:
     /// Throws Error(internal) when there is no such kernel.
     Kernel kernel(const std::string& name);
 
+    /// Puts the binary into the program cache if kernels were compiled that are not in it yet, and
+    /// waits for the queue then. PoCL compiles a kernel at its first launch: call this after the
+    /// first frame. The end of the program and its kernels does it too.
+    void store_binary();
+
+    /// Whether the program came from the cache.
+    bool from_cache() const;
+
     struct Impl;
 
 private:
-    explicit Program(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    explicit Program(std::shared_ptr<Impl> impl);
+    std::shared_ptr<Impl> impl_;
 };
 
 }  // namespace sahl

@@ -1,0 +1,92 @@
+#include "engine/device/opencl.h"
+
+#include <fmt/format.h>
+
+namespace sahl {
+namespace {
+
+// OpenCL 1.2's codes and the loader's own, as CL/cl.h numbers them.
+const char* name_of(cl_int code) {
+    switch (code) {
+#define SAHL_CASE(name) \
+    case name:          \
+        return #name;
+        SAHL_CASE(CL_SUCCESS)
+        SAHL_CASE(CL_DEVICE_NOT_FOUND)
+        SAHL_CASE(CL_DEVICE_NOT_AVAILABLE)
+        SAHL_CASE(CL_COMPILER_NOT_AVAILABLE)
+        SAHL_CASE(CL_MEM_OBJECT_ALLOCATION_FAILURE)
+        SAHL_CASE(CL_OUT_OF_RESOURCES)
+        SAHL_CASE(CL_OUT_OF_HOST_MEMORY)
+        SAHL_CASE(CL_PROFILING_INFO_NOT_AVAILABLE)
+        SAHL_CASE(CL_MEM_COPY_OVERLAP)
+        SAHL_CASE(CL_IMAGE_FORMAT_MISMATCH)
+        SAHL_CASE(CL_IMAGE_FORMAT_NOT_SUPPORTED)
+        SAHL_CASE(CL_BUILD_PROGRAM_FAILURE)
+        SAHL_CASE(CL_MAP_FAILURE)
+        SAHL_CASE(CL_MISALIGNED_SUB_BUFFER_OFFSET)
+        SAHL_CASE(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST)
+        SAHL_CASE(CL_COMPILE_PROGRAM_FAILURE)
+        SAHL_CASE(CL_LINKER_NOT_AVAILABLE)
+        SAHL_CASE(CL_LINK_PROGRAM_FAILURE)
+        SAHL_CASE(CL_DEVICE_PARTITION_FAILED)
+        SAHL_CASE(CL_KERNEL_ARG_INFO_NOT_AVAILABLE)
+        SAHL_CASE(CL_INVALID_VALUE)
+        SAHL_CASE(CL_INVALID_DEVICE_TYPE)
+        SAHL_CASE(CL_INVALID_PLATFORM)
+        SAHL_CASE(CL_INVALID_DEVICE)
+        SAHL_CASE(CL_INVALID_CONTEXT)
+        SAHL_CASE(CL_INVALID_QUEUE_PROPERTIES)
+        SAHL_CASE(CL_INVALID_COMMAND_QUEUE)
+        SAHL_CASE(CL_INVALID_HOST_PTR)
+        SAHL_CASE(CL_INVALID_MEM_OBJECT)
+        SAHL_CASE(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR)
+        SAHL_CASE(CL_INVALID_IMAGE_SIZE)
+        SAHL_CASE(CL_INVALID_SAMPLER)
+        SAHL_CASE(CL_INVALID_BINARY)
+        SAHL_CASE(CL_INVALID_BUILD_OPTIONS)
+        SAHL_CASE(CL_INVALID_PROGRAM)
+        SAHL_CASE(CL_INVALID_PROGRAM_EXECUTABLE)
+        SAHL_CASE(CL_INVALID_KERNEL_NAME)
+        SAHL_CASE(CL_INVALID_KERNEL_DEFINITION)
+        SAHL_CASE(CL_INVALID_KERNEL)
+        SAHL_CASE(CL_INVALID_ARG_INDEX)
+        SAHL_CASE(CL_INVALID_ARG_VALUE)
+        SAHL_CASE(CL_INVALID_ARG_SIZE)
+        SAHL_CASE(CL_INVALID_KERNEL_ARGS)
+        SAHL_CASE(CL_INVALID_WORK_DIMENSION)
+        SAHL_CASE(CL_INVALID_WORK_GROUP_SIZE)
+        SAHL_CASE(CL_INVALID_WORK_ITEM_SIZE)
+        SAHL_CASE(CL_INVALID_GLOBAL_OFFSET)
+        SAHL_CASE(CL_INVALID_EVENT_WAIT_LIST)
+        SAHL_CASE(CL_INVALID_EVENT)
+        SAHL_CASE(CL_INVALID_OPERATION)
+        SAHL_CASE(CL_INVALID_GL_OBJECT)
+        SAHL_CASE(CL_INVALID_BUFFER_SIZE)
+        SAHL_CASE(CL_INVALID_MIP_LEVEL)
+        SAHL_CASE(CL_INVALID_GLOBAL_WORK_SIZE)
+        SAHL_CASE(CL_INVALID_PROPERTY)
+        SAHL_CASE(CL_INVALID_IMAGE_DESCRIPTOR)
+        SAHL_CASE(CL_INVALID_COMPILER_OPTIONS)
+        SAHL_CASE(CL_INVALID_LINKER_OPTIONS)
+        SAHL_CASE(CL_INVALID_DEVICE_PARTITION_COUNT)
+#undef SAHL_CASE
+        case -1001:  // cl_khr_icd: CL_PLATFORM_NOT_FOUND_KHR
+            return "CL_PLATFORM_NOT_FOUND_KHR";
+        default:
+            return "an OpenCL error of the driver's own";
+    }
+}
+
+}  // namespace
+
+std::string cl_error_name(cl_int code) { return fmt::format("{} ({})", name_of(code), code); }
+
+void check_cl(cl_int status, std::string_view what, ExitCode code) {
+    if (status == CL_SUCCESS) return;
+    if (status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_HOST_MEMORY)
+        code = ExitCode::memory;
+    throw Error(code, fmt::format("{} failed: {}", what, cl_error_name(status)));
+}
+
+}  // namespace sahl

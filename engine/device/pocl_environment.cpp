@@ -1,0 +1,151 @@
+#include "engine/device/pocl_environment.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "engine/core/error.h"
+
+namespace sahl {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPrefix = "sahl-pocl-";
+constexpr const char* kLockName = "lock";
+constexpr std::uintmax_t kLeastFree = std::uintmax_t{32} << 20;  // bytes; PoCL aborts on a full disk
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
+    throw Error(
+        ExitCode::device,
+        fmt::format("{}: {}; PoCL compiles kernels into a folder below it: set TMPDIR to a folder that "
+                    "can be written, that allows executable files and has {} MiB free",
+                    folder.string(), reason, kLeastFree >> 20));
+}
+
+/// A folder of this process while the lock on its file `lock` is held. The kernel gives the lock
+/// back when the process dies, however it dies, so a folder whose lock is free belongs to no one.
+/// (Process ids would not tell: they are used again, and containers may share a /tmp.)
+class PrivateFolder {
+public:
+    explicit PrivateFolder(const fs::path& parent) : owner_(getpid()) {
+        // Another process that tidies up may take a folder before its lock is: then once more.
+        for (int attempt = 0; attempt < 8 && lock_ < 0; ++attempt) make(parent);
+        if (lock_ < 0) refuse(parent, "a new folder cannot be kept there");
+        try {
+            check_space();
+            check_executable();
+        } catch (...) {
+            remove();
+            throw;
+        }
+    }
+    ~PrivateFolder() { remove(); }
+    PrivateFolder(const PrivateFolder&) = delete;
+    PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+    const fs::path& path() const { return path_; }
+
+private:
+    void make(const fs::path& parent) {
+        std::string name = (parent / fmt::format("{}{}-XXXXXX", kPrefix, owner_)).string();
+        if (mkdtemp(name.data()) == nullptr) refuse(parent, std::strerror(errno));  // mode 0700
+        path_ = name;
+        const int file = open((path_ / kLockName).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+        if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fs::exists(path_ / kLockName)) {
+            lock_ = file;
+            return;
+        }
+        if (file >= 0) close(file);
+    }
+
+    void check_space() const {
+        struct statvfs space;
+        if (statvfs(path_.c_str(), &space) != 0) refuse(path_.parent_path(), std::strerror(errno));
+        const std::uintmax_t free = std::uintmax_t{space.f_bavail} * space.f_frsize;
+        if (free < kLeastFree) refuse(path_.parent_path(), fmt::format("only {} KiB are free", free >> 10));
+    }
+
+    void check_executable() const {
+        const char byte = 0;
+        if (::write(lock_, &byte, 1) != 1) refuse(path_.parent_path(), std::strerror(errno));
+        void* code = mmap(nullptr, 1, PROT_READ | PROT_EXEC, MAP_PRIVATE, lock_, 0);
+        if (code == MAP_FAILED) refuse(path_.parent_path(), "it is mounted noexec");
+        munmap(code, 1);
+    }
+
+    void remove() {
+        if (getpid() != owner_) return;  // a fork's exit is not ours
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+        if (lock_ >= 0) close(lock_);
+    }
+
+    pid_t owner_;
+    fs::path path_;
+    int lock_ = -1;
+};
+
+/// Removes the folders that processes of this user left behind when they were killed.
+void remove_stale_folders(const fs::path& parent) {
+    std::error_code error;
+    for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
+        const fs::path folder = entry->path();
+        if (folder.filename().string().rfind(kPrefix, 0) != 0) continue;
+        struct stat status;
+        if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != geteuid())
+            continue;
+        const int file = open((folder / kLockName).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+        if (file < 0) continue;
+        std::error_code ignored;
+        if (flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, ignored);
+        close(file);
+    }
+}
+
+fs::path temporary_folder() {
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (!error) return fs::absolute(folder);
+    const char* set = std::getenv("TMPDIR");
+    refuse(set != nullptr ? set : "/tmp", error.message());
+}
+
+const PrivateFolder& private_folder() {
+    static const PrivateFolder folder(temporary_folder());
+    return folder;
+}
+
+}  // namespace
+
+void prepare_pocl(int threads) {
+    static std::once_flag once;
+    std::call_once(once, [threads] {
+        remove_stale_folders(temporary_folder());
+        setenv("POCL_CACHE_DIR", private_folder().path().c_str(), 1);
+        if (threads > 0) setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+    });
+}
+
+std::size_t count_compiled_kernels() {
+    std::size_t count = 0;
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(private_folder().path(), error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry->path().extension() == ".so") ++count;
+    }
+    return count;
+}
+
+}  // namespace sahl

@@ -1,0 +1,21 @@
+// What PoCL reads from the environment, set before the process's first OpenCL call, and the
+// private folder that it compiles into.
+#pragma once
+
+#include <cstddef>
+
+namespace sahl {
+
+/// Call before every first use of OpenCL; only the first call in a process does something.
+/// Sets POCL_CACHE_DIR to a new folder of this process (mode 0700, below TMPDIR or /tmp), removed
+/// at exit: PoCL's own cache is shared between racing processes, and code that is damaged there is
+/// run all the same. Folders that dead processes left are removed too. `threads` > 0 becomes
+/// POCL_MAX_PTHREAD_COUNT.
+/// Throws Error(device) when there is no place to write and execute files, for PoCL would abort.
+void prepare_pocl(int threads);
+
+/// Kernels compiled so far into the private folder (one shared object each; those that came with a
+/// program binary count too).
+std::size_t count_compiled_kernels();
+
+}  // namespace sahl

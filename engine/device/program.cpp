@@ -1,0 +1,183 @@
+#include "engine/device/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "engine/device/device_impl.h"
+#include "engine/device/kernel_source.h"
+#include "engine/device/program_cache.h"
+
+namespace sahl {
+
+struct Program::Impl {
+    Device& device;
+    std::string key;
+    cl::Program program;
+    bool from_cache = false;
+    std::set<std::string> cached;    ///< kernels whose compiled code is in the cache's binary
+    std::set<std::string> launched;  ///< kernels that have been compiled for this device
+
+    ~Impl() { store(); }
+    void store() noexcept;
+};
+
+struct Kernel::Impl {
+    std::shared_ptr<Program::Impl> program;
+    std::string name;
+    cl::Kernel kernel;
+    std::uint32_t arguments;
+    bool launched = false;
+};
+
+namespace {
+
+/// "model name" and "flags" of the first processor: what a compiler for the host looks at.
+std::string cpu_model() {
+    std::ifstream file("/proc/cpuinfo");
+    std::string model;
+    for (std::string line; std::getline(file, line) && !line.empty();) {
+        if (line.rfind("model name", 0) == 0 || line.rfind("flags", 0) == 0) model += line + '\n';
+    }
+    return model;
+}
+
+std::string cache_key(Device& device, const KernelSource& source, const std::string& options) {
+    const DeviceInfo& info = device.info();
+    return fmt::format("options {}\ndevice {}\nvendor {}\nversion {}\ndriver {}\nplatform {}, {}\n{}\n{}",
+                       options, info.name, info.vendor, info.version, info.driver, info.platform,
+                       device.impl().platform_version, info.is_cpu ? cpu_model() : "", source.text);
+}
+
+/// The program from a cached binary; nothing if the driver does not take it.
+cl::Program build_from_binary(Device& device, const std::string& binary, const std::string& options) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
+    const cl::Program::Binaries binaries{{bytes, bytes + binary.size()}};
+    cl_int status = CL_SUCCESS;
+    cl::Program program(device.impl().context, {device.impl().device}, binaries, nullptr, &status);
+    if (status != CL_SUCCESS || program.build({device.impl().device}, options.c_str()) != CL_SUCCESS)
+        return {};
+    return program;
+}
+
+cl::Program build_from_source(Device& device, const KernelSource& source, const std::string& options) {
+    cl_int status = CL_SUCCESS;
+    cl::Program program(device.impl().context, source.text, false, &status);
+    check_cl(status, "creating a program");
+    status = program.build({device.impl().device}, options.c_str());
+    if (status == CL_SUCCESS) return program;
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.impl().device);
+    throw Error(ExitCode::device,
+                fmt::format("building the kernels failed: {}\ndevice: {} ({}, driver {})\noptions: {}\n{}",
+                            cl_error_name(status), device.info().name, device.info().platform,
+                            device.info().driver, options, annotate_build_log(log, source)));
+}
+
+std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
+    std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
+    if (!more.empty()) options += " " + more;
+    std::shared_ptr<Program::Impl> impl(
+        new Program::Impl{device, cache_key(device, source, options), {}, false, {}, {}});
+    if (const auto cached = load_program(impl->key)) {
+        impl->program = build_from_binary(device, cached->binary, options);
+        impl->from_cache = impl->program() != nullptr;
+        if (impl->from_cache) impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
+    }
+    if (!impl->from_cache) impl->program = build_from_source(device, source, options);
+    return impl;
+}
+
+}  // namespace
+
+void Program::Impl::store() noexcept try {
+    // A binary of PoCL has the compiled code of the kernels launched so far; asking for it makes
+    // PoCL compile every kernel once more for any local size (the price of the first run).
+    const bool complete = std::includes(cached.begin(), cached.end(), launched.begin(), launched.end());
+    if (launched.empty() || (from_cache && (complete || !device.info().is_pocl)) || (!from_cache && complete))
+        return;
+    device.impl().queue.finish();
+    cl_int status = CL_SUCCESS;
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>(&status);
+    if (status != CL_SUCCESS || binaries.size() != 1 || binaries[0].empty()) return;
+    cached.insert(launched.begin(), launched.end());
+    store_program(key, {std::string(binaries[0].begin(), binaries[0].end()), {cached.begin(), cached.end()}});
+} catch (...) {
+    // What is not cached is compiled again in the next run.
+}
+
+Program::Program(Device& device, const std::vector<std::string>& sources, const std::string& options)
+    : impl_(build(device, expand_files(sources), options)) {}
+
+Program::Program(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Program Program::from_text(Device& device, const std::string& text, const std::string& options) {
+    return Program(build(device, expand_text(text), options));
+}
+
+Program::~Program() = default;
+Program::Program(Program&&) noexcept = default;
+
+Kernel Program::kernel(const std::string& name) {
+    cl_int status = CL_SUCCESS;
+    cl::Kernel kernel(impl_->program, name.c_str(), &status);
+    check_cl(status, "looking up kernel " + name, ExitCode::internal);
+    cl_uint arguments = 0;
+    check_cl(kernel.getInfo(CL_KERNEL_NUM_ARGS, &arguments), "counting the parameters of kernel " + name);
+    return Kernel(std::unique_ptr<Kernel::Impl>(new Kernel::Impl{impl_, name, std::move(kernel), arguments}));
+}
+
+void Program::store_binary() { impl_->store(); }
+
+bool Program::from_cache() const { return impl_->from_cache; }
+
+Kernel::Kernel(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Kernel::~Kernel() = default;
+Kernel::Kernel(Kernel&&) noexcept = default;
+
+void Kernel::set_buffer(std::uint32_t index, const Buffer& buffer) {
+    const cl_int status = impl_->kernel.setArg(index, buffer.impl()->buffer);
+    if (status == CL_SUCCESS) return;
+    check_cl(status,
+             fmt::format("kernel {}: giving buffer {} as argument {}", impl_->name, buffer.name(), index),
+             ExitCode::internal);
+}
+
+void Kernel::set_value(std::uint32_t index, const void* value, std::size_t bytes) {
+    const cl_int status = impl_->kernel.setArg(index, bytes, value);
+    if (status == CL_SUCCESS) return;
+    check_cl(status, fmt::format("kernel {}: giving {} bytes as argument {}", impl_->name, bytes, index),
+             ExitCode::internal);
+}
+
+void Kernel::enqueue(const Launch& launch, std::uint32_t argument_count) {
+    Device& device = impl_->program->device;
+    if (argument_count != impl_->arguments) {
+        throw Error(ExitCode::internal, fmt::format("kernel {}: {} arguments for {} parameters", impl_->name,
+                                                    argument_count, impl_->arguments));
+    }
+    if (launch.work_items == 0) return;
+    const std::size_t local = device.local_size();
+    const std::size_t global = (launch.work_items + local - 1) / local * local;
+    if (global > device.max_work_items()) {
+        throw Error(ExitCode::internal,
+                    fmt::format("kernel {}: {} work-items in one launch, {} runs at most {}", impl_->name,
+                                global, device.info().name, device.max_work_items()));
+    }
+    LaunchLog::Impl& log = device.launches().impl();
+    cl::Event event;
+    const cl_int status =
+        device.impl().queue.enqueueNDRangeKernel(impl_->kernel, cl::NullRange, cl::NDRange(global),
+                                                 cl::NDRange(local), nullptr, log.enabled ? &event : nullptr);
+    if (status != CL_SUCCESS) check_cl(status, "launching kernel " + impl_->name);
+    if (log.enabled) log.pending.push_back({impl_->name, launch.generation, launch.items, std::move(event)});
+    if (!impl_->launched) {
+        impl_->launched = true;
+        impl_->program->launched.insert(impl_->name);
+    }
+}
+
+}  // namespace sahl
