@@ -1,0 +1,57 @@
+// What no scene may hold, whatever its format: the loaders call these at the place of the value.
+#pragma once
+
+#include <string_view>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/core/error.h"
+#include "engine/scene/scene.h"
+
+namespace sahl {
+
+/// Numbers of a scene (coordinates, colours, matrix elements) are at most this large: float's range
+/// leaves room for their squares.
+constexpr double max_magnitude = 1e15;
+
+/// Lengths that must not vanish (radii, distances) are at least this: their squares and inverses are
+/// normal floats.
+constexpr double min_length = 1e-15;
+
+/// Largest width and height of an image in pixels.
+constexpr int max_resolution = 65536;
+
+/// Allowed values of a number.
+struct Range {
+    double low = -max_magnitude;
+    double high = max_magnitude;
+    bool inclusive = true;  ///< whether the ends themselves are allowed
+
+    constexpr bool contains(double x) const {
+        return inclusive ? x >= low && x <= high : x > low && x < high;
+    }
+};
+
+constexpr Range any_number{};
+constexpr Range not_negative{0, max_magnitude};
+constexpr Range positive_length{min_length, max_magnitude};
+constexpr Range field_of_view{0, 180, false};  ///< degrees
+
+/// Throws SceneError "`what` must be …" unless `value` is finite and in `range`.
+void check_range(double value, Range range, std::string_view what, const SourceLocation& where);
+
+/// Throws SceneError, at `look_at` or `up`, unless the eye differs from look_at and up is no
+/// multiple of the viewing direction.
+void check_camera(const Camera& camera, const SourceLocation& look_at, const SourceLocation& up);
+
+/// Whether an affine transformation has an inverse that double holds with a few digits: its longest
+/// axis is less than 1e12 of its shortest.
+bool is_invertible(const glm::dmat4& m);
+
+/// Throws SceneError unless `m` (affine, applied to a sphere of `radius` about `center`) can be
+/// inverted and leaves an ellipsoid inside ±max_magnitude.
+void check_sphere_transform(const glm::dmat4& m, glm::dvec3 center, double radius,
+                            const SourceLocation& where);
+
+}  // namespace sahl
