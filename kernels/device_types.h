@@ -3,7 +3,7 @@
 #ifndef SAHL_DEVICE_TYPES_H
 #define SAHL_DEVICE_TYPES_H
 
-#ifdef __OPENCL_VERSION__
+#ifndef __cplusplus
 #define SAHL_STATIC_ASSERT(condition, text) _Static_assert(condition, text)
 typedef uint sahl_uint;
 #else
@@ -109,7 +109,7 @@ SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
 //   sphere     centre, radius
 //   ellipsoid  m (9), origin
 //   cone       m (9), origin, slope
-//   polygon    unit normal, a point
+//   polygon    unit normal, a point, then (bits of uints) first vertex, vertex count
 #define SAHL_PRIMITIVE_SMOOTH 1u
 typedef struct {
     sahl_uint kind;
@@ -121,8 +121,7 @@ SAHL_STATIC_ASSERT(sizeof(DevicePrimitive) == 16, "DevicePrimitive is 16 bytes")
 
 #define SAHL_MATERIAL_TWO_SIDED 1u
 #define SAHL_MATERIAL_BLINN 2u
-#define SAHL_MATERIAL_REFLECTS 4u
-#define SAHL_MATERIAL_TRANSMITS 8u
+#define SAHL_MATERIAL_TRANSMITS 4u
 typedef struct {
     float emitted[3];  // ambient + emission
     float shininess;
@@ -151,10 +150,9 @@ SAHL_STATIC_ASSERT(sizeof(DeviceLight) == 48, "DeviceLight is 48 bytes");
 
 typedef struct {
     float background[3];
-    float extent;  // largest |coordinate| of the scene's bounds and eye
+    float extent;  // largest |coordinate| of the scene's bounds
     sahl_uint light_count;
-    sahl_uint any_transparent;
-    sahl_uint spare[2];
+    sahl_uint spare[3];
 } SceneConstants;
 SAHL_STATIC_ASSERT(sizeof(SceneConstants) == 32, "SceneConstants is 32 bytes");
 
@@ -202,7 +200,20 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 #define SAHL_HIT_V 2
 #define SAHL_HIT_FLOATS 3
 
-#ifndef __OPENCL_VERSION__
+// What shadow rays start from: the position and the vector ng·offset off the surface.
+#define SAHL_SURFACE_POSITION 0
+#define SAHL_SURFACE_OFFSET 3
+#define SAHL_SURFACE_FLOATS 6
+
+// What became of a ray: which children it has, and how many shadow rays above these bits.
+#define SAHL_OUTCOME_REFLECTED 1u
+#define SAHL_OUTCOME_TRANSMITTED 2u
+#define SAHL_OUTCOME_SHADOW_RAY 4u
+
+// Parents that one work-item compacts.
+#define SAHL_COMPACT_BLOCK 256u
+
+#ifdef __cplusplus
 }  // namespace sahl::device
 #endif
 

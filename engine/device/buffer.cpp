@@ -75,6 +75,8 @@ Buffer::Buffer(Device& device, HostMemory&& memory, std::string name)
     write_bytes(filled.data(), filled.size());
 }
 
+Buffer::Buffer() = default;
+
 Buffer::~Buffer() = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;

@@ -22,7 +22,7 @@ class Mapping;
 /// on zero-copy devices and undefined elsewhere. Move-only.
 class Buffer {
 public:
-    Buffer() = default;
+    Buffer();
     /// Throws Error(memory) naming the buffer and its size when it cannot be had or when it is
     /// larger than the device's largest allocation. 0 bytes are rounded up to 64.
     Buffer(Device& device, std::size_t bytes, std::string name);

@@ -1,0 +1,115 @@
+#include "engine/render/leaf_blocks.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <limits>
+
+namespace sahl {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t unused_id = SAHL_NO_PRIMITIVE | SAHL_ID_BIAS;
+
+/// Calls lane(k, data, id) for the leaf's primitives; the block's unused lanes keep their filling.
+template <class Lane>
+void for_each_lane(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, const Lane& lane) {
+    for (std::uint32_t k = 0; k < leaf.count; ++k) {
+        const std::uint32_t id = leaf.ids[k];
+        lane(k, &lowered.shape_data[lowered.primitives[id].data], block_id(scene, id));
+    }
+}
+
+template <class Block>
+void fill_ids(Block& block) {
+    std::fill(std::begin(block.id), std::end(block.id), unused_id);
+}
+
+void pack_triangles(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
+                    device::TriangleBlock& block) {
+    std::fill(std::begin(block.x), std::end(block.x), nan);
+    std::fill(std::begin(block.y), std::end(block.y), nan);
+    std::fill(std::begin(block.z), std::end(block.z), nan);
+    std::fill(std::begin(block.spare_y), std::end(block.spare_y), 1.0F);
+    std::fill(std::begin(block.spare_z), std::end(block.spare_z), 1.0F);
+    fill_ids(block);
+    for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
+        for (std::uint32_t corner = 0; corner < 3; ++corner) {
+            block.x[4 * corner + k] = data[3 * corner];
+            block.y[4 * corner + k] = data[3 * corner + 1];
+            block.z[4 * corner + k] = data[3 * corner + 2];
+        }
+        block.id[k] = id;
+    });
+}
+
+void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::SphereBlock& block) {
+    std::fill(std::begin(block.radius), std::end(block.radius), nan);
+    fill_ids(block);
+    for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
+        block.x[k] = data[0];
+        block.y[k] = data[1];
+        block.z[k] = data[2];
+        block.radius[k] = data[3];
+        block.id[k] = id;
+    });
+}
+
+void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::QuadricBlock& block) {
+    for (auto& row : block.m) {
+        std::fill(std::begin(row), std::end(row), nan);
+    }
+    fill_ids(block);
+    for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
+        for (std::uint32_t element = 0; element < 9; ++element) {
+            block.m[element][k] = data[element];
+        }
+        block.x[k] = data[9];
+        block.y[k] = data[10];
+        block.z[k] = data[11];
+        block.slope[k] = leaf.kind == SAHL_KIND_CONE ? data[12] : 0.0F;
+        block.id[k] = id;
+    });
+}
+
+void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::PolygonBlock& block) {
+    std::fill(std::begin(block.normal_x), std::end(block.normal_x), nan);
+    fill_ids(block);
+    for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
+        block.normal_x[k] = data[0];
+        block.normal_y[k] = data[1];
+        block.normal_z[k] = data[2];
+        block.x[k] = data[3];
+        block.y[k] = data[4];
+        block.z[k] = data[5];
+        block.first_vertex[k] = std::bit_cast<std::uint32_t>(data[6]);
+        block.vertex_count[k] = std::bit_cast<std::uint32_t>(data[7]);
+        block.id[k] = id;
+    });
+}
+
+}  // namespace
+
+HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, const LoweredScene& lowered,
+                            const Bvh& bvh) {
+    HostMemory memory(accountant, std::size_t{bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES, "leaf blocks");
+    auto* block = static_cast<std::byte*>(memory.data());
+    for (const BvhLeaf& leaf : bvh.leaves) {
+        switch (leaf.kind) {
+            case SAHL_KIND_TRIANGLE:
+                pack_triangles(scene, lowered, leaf, *reinterpret_cast<device::TriangleBlock*>(block));
+                break;
+            case SAHL_KIND_SPHERE:
+                pack_spheres(scene, lowered, leaf, *reinterpret_cast<device::SphereBlock*>(block));
+                break;
+            case SAHL_KIND_POLYGON:
+                pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
+                break;
+            default: pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block)); break;
+        }
+        block += std::size_t{block_lines(leaf.kind)} * SAHL_LEAF_LINE_BYTES;
+    }
+    return memory;
+}
+
+}  // namespace sahl

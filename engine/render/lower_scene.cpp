@@ -1,0 +1,273 @@
+#include "engine/render/lower_scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/core/error.h"
+
+namespace sahl {
+namespace {
+
+using glm::dmat3;
+using glm::dmat4;
+using glm::dvec3;
+using glm::vec3;
+
+dvec3 transform_point(const dmat4& m, const dvec3& p) {
+    return dvec3(m * glm::dvec4(p, 1));
+}
+
+/// The box lo..hi in floats that contains it, widened by the rounding that shapes went through on
+/// their way to the device.
+Bounds outer_bounds(const dvec3& lo, const dvec3& hi) {
+    constexpr double slack = 4e-7;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    Bounds bounds{};
+    for (int k = 0; k < 3; ++k) {
+        const double margin = slack * std::max({std::abs(lo[k]), std::abs(hi[k]), hi[k] - lo[k]});
+        bounds.lo[k] = std::nextafter(static_cast<float>(lo[k] - margin), -infinity);
+        bounds.hi[k] = std::nextafter(static_cast<float>(hi[k] + margin), infinity);
+    }
+    return bounds;
+}
+
+Bounds point_bounds(const std::vector<vec3>& points) {
+    Bounds bounds{};
+    for (int k = 0; k < 3; ++k) {
+        const auto [lo, hi] =
+            std::minmax_element(points.begin(), points.end(), [k](auto a, auto b) { return a[k] < b[k]; });
+        bounds.lo[k] = (*lo)[k];
+        bounds.hi[k] = (*hi)[k];
+    }
+    return bounds;
+}
+
+/// Normal of a closed outline by Newell's method, unit length.
+dvec3 newell_normal(const std::vector<vec3>& points) {
+    dvec3 normal(0);
+    const dvec3 origin(points[0]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const dvec3 a = dvec3(points[i]) - origin;
+        const dvec3 b = dvec3(points[(i + 1) % points.size()]) - origin;
+        normal += glm::cross(a, b);
+    }
+    return glm::normalize(normal);
+}
+
+/// Appends shapes one after the other; each writes its data and returns kind and bounds.
+class Lowering {
+public:
+    Lowering(const Scene& scene, LoweredScene& out) : scene_(scene), out_(out) {}
+
+    void add(std::uint32_t id) {
+        const Primitive& primitive = scene_.primitives[id];
+        transform_ = scene_.transforms[primitive.transform];
+        linear_ = dmat3(transform_);
+        mirrored_ = glm::determinant(linear_) < 0;
+        lowered_ = {0, primitive.material, static_cast<std::uint32_t>(out_.shape_data.size()), 0};
+        switch (primitive.kind) {
+            case PrimitiveKind::triangle: add_triangle(scene_.triangles[primitive.index]); break;
+            case PrimitiveKind::polygon: add_polygon(scene_.polygons[primitive.index]); break;
+            case PrimitiveKind::sphere: add_sphere(scene_.spheres[primitive.index]); break;
+            case PrimitiveKind::cone: add_cone(scene_.cones[primitive.index]); break;
+        }
+        for (int k = 0; k < 3; ++k) {
+            if (!std::isfinite(bounds_.lo[k]) || !std::isfinite(bounds_.hi[k])) {
+                throw Error(ExitCode::scene, "primitive " + std::to_string(id) +
+                                                 " has no finite place in the world; check its coordinates and transform");
+            }
+        }
+        out_.primitives.push_back(lowered_);
+        out_.build_primitives.push_back({bounds_, lowered_.kind, id});
+    }
+
+private:
+    void push(const vec3& v) { out_.shape_data.insert(out_.shape_data.end(), {v.x, v.y, v.z}); }
+
+    void add_triangle(const Triangle& triangle) {
+        // Swapping two corners keeps the winding's normal outward under a mirroring transform.
+        const int order[3] = {0, mirrored_ ? 2 : 1, mirrored_ ? 1 : 2};
+        points_.clear();
+        for (const int corner : order) {
+            points_.emplace_back(transform_point(transform_, dvec3(scene_.vertices[triangle.vertices[corner]])));
+            push(points_.back());
+        }
+        if (triangle.smooth) {
+            const dmat3 normal_from_object = glm::transpose(glm::inverse(linear_));
+            for (const int corner : order) {
+                const dvec3 n(glm::normalize(dvec3(scene_.normals[triangle.normals[corner]])));
+                push(vec3(glm::normalize(normal_from_object * n)));
+            }
+            lowered_.flags = SAHL_PRIMITIVE_SMOOTH;
+        }
+        lowered_.kind = SAHL_KIND_TRIANGLE;
+        bounds_ = point_bounds(points_);
+    }
+
+    void add_polygon(const Polygon& polygon) {
+        points_.clear();
+        for (std::uint32_t i = 0; i < polygon.vertex_count; ++i) {
+            points_.emplace_back(
+                transform_point(transform_, dvec3(scene_.polygon_vertices[polygon.first_vertex + i])));
+        }
+        if (mirrored_) {
+            std::reverse(points_.begin(), points_.end());
+        }
+        push(vec3(newell_normal(points_)));
+        push(points_[0]);
+        const auto first_vertex = static_cast<std::uint32_t>(out_.polygon_vertices.size() / 3);
+        out_.shape_data.push_back(std::bit_cast<float>(first_vertex));
+        out_.shape_data.push_back(std::bit_cast<float>(polygon.vertex_count));
+        for (const vec3& p : points_) {
+            out_.polygon_vertices.insert(out_.polygon_vertices.end(), {p.x, p.y, p.z});
+        }
+        lowered_.kind = SAHL_KIND_POLYGON;
+        bounds_ = point_bounds(points_);
+    }
+
+    void add_sphere(const Sphere& sphere) {
+        const dvec3 center = transform_point(transform_, sphere.center);
+        const dmat3 world_from_unit = linear_ * sphere.radius;
+        const dmat3 gram = glm::transpose(world_from_unit) * world_from_unit;
+        const double radius2 = gram[0][0];
+        double deviation = 0;
+        for (int column = 0; column < 3; ++column) {
+            for (int row = 0; row < 3; ++row) {
+                deviation = std::max(deviation, std::abs(gram[column][row] - (row == column ? radius2 : 0)));
+            }
+        }
+        dvec3 half_extent;
+        for (int k = 0; k < 3; ++k) {
+            half_extent[k] = glm::length(glm::row(world_from_unit, k));
+        }
+        if (deviation <= 1e-12 * radius2) {
+            lowered_.kind = SAHL_KIND_SPHERE;
+            push(vec3(center));
+            out_.shape_data.push_back(static_cast<float>(std::sqrt(radius2)));
+        } else {
+            lowered_.kind = SAHL_KIND_ELLIPSOID;
+            push_object_space(world_from_unit, center);
+        }
+        bounds_ = outer_bounds(center - half_extent, center + half_extent);
+    }
+
+    void add_cone(const Cone& cone) {
+        const bool turned = cone.apex_radius > cone.base_radius;  // slopes are never positive
+        const dvec3 base = turned ? cone.apex : cone.base;
+        const dvec3 axis = (turned ? cone.base : cone.apex) - base;
+        const double base_radius = turned ? cone.apex_radius : cone.base_radius;
+        const double apex_radius = turned ? cone.base_radius : cone.apex_radius;
+        const dvec3 unit = glm::normalize(axis);
+        const dvec3 helper = std::abs(unit.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+        const dvec3 x = glm::normalize(glm::cross(helper, unit));
+        const dvec3 y = glm::cross(unit, x);
+        const dmat3 world_from_cone = linear_ * dmat3(x * base_radius, y * base_radius, axis);
+        const dvec3 world_base = transform_point(transform_, base);
+        const dvec3 world_apex = transform_point(transform_, base + axis);
+        dvec3 lo, hi;
+        for (int k = 0; k < 3; ++k) {
+            const double radius = glm::length(glm::dvec2(world_from_cone[0][k], world_from_cone[1][k]));
+            const double far_radius = radius * apex_radius / base_radius;
+            lo[k] = std::min(world_base[k] - radius, world_apex[k] - far_radius);
+            hi[k] = std::max(world_base[k] + radius, world_apex[k] + far_radius);
+        }
+        lowered_.kind = SAHL_KIND_CONE;
+        push_object_space(world_from_cone, world_base);
+        out_.shape_data.push_back(static_cast<float>((apex_radius - base_radius) / base_radius));
+        bounds_ = outer_bounds(lo, hi);
+    }
+
+    void push_object_space(const dmat3& world_from_object, const dvec3& origin) {
+        const dmat3 object_from_world = glm::inverse(world_from_object);
+        for (int row = 0; row < 3; ++row) {
+            push(vec3(glm::row(object_from_world, row)));
+        }
+        push(vec3(origin));
+    }
+
+    const Scene& scene_;
+    LoweredScene& out_;
+    dmat4 transform_{1};
+    dmat3 linear_{1};
+    bool mirrored_ = false;
+    device::DevicePrimitive lowered_{};
+    Bounds bounds_{};
+    std::vector<vec3> points_;
+};
+
+void copy3(float (&to)[3], const vec3& from) {
+    to[0] = from.x;
+    to[1] = from.y;
+    to[2] = from.z;
+}
+
+device::DeviceMaterial lower_material(const Material& material) {
+    device::DeviceMaterial out{};
+    copy3(out.emitted, material.ambient + material.emission);
+    copy3(out.diffuse, material.diffuse);
+    copy3(out.specular, material.specular);
+    copy3(out.reflection, material.reflection);
+    copy3(out.transmission, material.transmission);
+    out.shininess = material.shininess;
+    out.ior = material.ior;
+    out.flags = (material.two_sided ? SAHL_MATERIAL_TWO_SIDED : 0U) |
+                (material.specular_model == SpecularModel::blinn ? SAHL_MATERIAL_BLINN : 0U) |
+                (material.transmission != vec3(0) ? SAHL_MATERIAL_TRANSMITS : 0U);
+    return out;
+}
+
+device::DeviceLight lower_light(const Light& light) {
+    device::DeviceLight out{};
+    const bool point = light.kind == LightKind::point;
+    out.kind = point ? SAHL_LIGHT_POINT : SAHL_LIGHT_DIRECTIONAL;
+    copy3(out.position, vec3(point ? light.position : glm::normalize(light.position)));
+    copy3(out.color, light.color);
+    copy3(out.attenuation, light.attenuation);
+    return out;
+}
+
+}  // namespace
+
+LoweredScene lower_scene(const Scene& scene) {
+    const std::size_t count = scene.primitives.size();
+    if (count > SAHL_MAX_PRIMITIVES) {
+        throw Error(ExitCode::scene, "the scene has " + std::to_string(count) + " primitives, at most " +
+                                         std::to_string(SAHL_MAX_PRIMITIVES) + " are possible; split the scene");
+    }
+    LoweredScene out;
+    out.primitives.reserve(count);
+    out.build_primitives.reserve(count);
+    Lowering lowering(scene, out);
+    for (std::uint32_t id = 0; id < count; ++id) {
+        lowering.add(id);
+    }
+    if (out.shape_data.size() > std::numeric_limits<std::uint32_t>::max()) {
+        throw Error(ExitCode::scene, "the scene's shapes need more than 2^32 numbers; split the scene");
+    }
+    for (const Material& material : scene.materials) {
+        out.materials.push_back(lower_material(material));
+    }
+    for (const Light& light : scene.lights) {
+        out.lights.push_back(lower_light(light));
+    }
+    return out;
+}
+
+std::uint32_t block_id(const Scene& scene, std::uint32_t id) {
+    const Primitive& primitive = scene.primitives[id];
+    const bool inside_only =
+        (primitive.kind == PrimitiveKind::sphere && scene.spheres[primitive.index].inside_only) ||
+        (primitive.kind == PrimitiveKind::cone && scene.cones[primitive.index].inside_only);
+    const bool transparent = scene.materials[primitive.material].transmission != vec3(0);
+    return id | SAHL_ID_BIAS | (inside_only ? SAHL_ID_INSIDE_ONLY : 0U) | (transparent ? SAHL_ID_TRANSPARENT : 0U);
+}
+
+}  // namespace sahl

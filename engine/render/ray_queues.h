@@ -1,0 +1,45 @@
+// The device memory of a wave: ray batches, and what one generation leaves for the next kernel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/device/buffer.h"
+#include "engine/device/device.h"
+
+namespace sahl {
+
+/// Rays of one generation (arrays of device_types.h, SAHL_RAY_*).
+struct RayBatch {
+    Buffer rays;
+    Buffer ids;
+};
+
+/// Light to add to the film: three float arrays and the pixels they go to.
+struct Contributions {
+    Buffer light;
+    Buffer pixels;
+};
+
+struct RayQueues {
+    /// All buffers for batches of at most `ray_capacity` rays (rounded up to whole cache lines).
+    RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count);
+
+    std::uint32_t capacity;
+    /// The batch in work and those that wait: a generation leaves at most one waiting, so depth + 1.
+    std::vector<RayBatch> batches;
+    Buffer hits;
+    Buffer hit_primitives;
+    Buffer shadow_surfaces;
+    Buffer shadow_light;  ///< three arrays a light
+    Buffer children;      ///< two batches' arrays: reflected, transmitted
+    Buffer child_ids;
+    Buffer outcomes;
+    Buffer block_counts;
+    Buffer block_shadow_rays;
+    Buffer totals;
+    /// Two, so that the host adds one to the film while the device fills the other.
+    Contributions contributions[2];
+};
+
+}  // namespace sahl

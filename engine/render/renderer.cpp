@@ -1,0 +1,81 @@
+#include "engine/render/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/error.h"
+#include "engine/render/wavefront.h"
+
+namespace sahl {
+namespace {
+
+void copy3(float (&to)[3], const glm::dvec3& from) {
+    for (int k = 0; k < 3; ++k) {
+        to[k] = static_cast<float>(from[k]);
+    }
+}
+
+/// The camera's frame and pixel steps: w = norm(eye - look_at), u = norm(up x w), v = w x u.
+device::CameraConstants camera_constants(const Camera& camera, const Resolution& resolution) {
+    const glm::dvec3 w = glm::normalize(camera.eye - camera.look_at);
+    const glm::dvec3 u = glm::normalize(glm::cross(camera.up, w));
+    const glm::dvec3 v = glm::cross(w, u);
+    const double pixel = 2 * std::tan(camera.fov_y * std::numbers::pi / 360) / resolution.height;
+    device::CameraConstants out{};
+    copy3(out.eye, camera.eye);
+    copy3(out.forward, -w);
+    copy3(out.step_x, u * pixel);
+    copy3(out.step_y, v * -pixel);
+    out.half_width = static_cast<float>(resolution.width) / 2;
+    out.half_height = static_cast<float>(resolution.height) / 2;
+    return out;
+}
+
+/// Work-items of a launch stay below this number (POCL compiles larger grids apart).
+constexpr std::uint64_t max_work_items = 65535;
+
+}  // namespace
+
+struct Renderer::Impl {
+    Impl(Device& on, const Scene& scene)
+        : device(on),
+          camera(scene.camera),
+          device_scene(make_device_scene(on, scene)),
+          program(on, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}),
+          kernels(program) {}
+
+    Device& device;
+    Camera camera;
+    DeviceScene device_scene;
+    Program program;
+    WavefrontKernels kernels;
+};
+
+Renderer::Renderer(Device& device, const Scene& scene) : impl_(std::make_unique<Impl>(device, scene)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+
+const BvhStatistics& Renderer::bvh_statistics() const {
+    return impl_->device_scene.bvh_statistics;
+}
+
+RenderStatistics Renderer::render(const RenderSettings& settings, Film& film, const ProgressCallback& progress) {
+    const Resolution& resolution = settings.resolution;
+    const Crop crop = settings.crop.value_or(Crop{0, 0, resolution.width, resolution.height});
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > resolution.width || crop.y1 > resolution.height ||
+        film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
+        throw Error(ExitCode::usage, "the crop must lie inside the image and the film must have the crop's size");
+    }
+    const std::uint64_t samples = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(settings.spp);
+    const std::uint64_t most = max_work_items * impl_->device.rays_per_item();
+    const auto capacity = static_cast<std::uint32_t>(std::min({std::uint64_t{settings.ray_budget}, samples, most}));
+    RayQueues queues(impl_->device, capacity, settings.depth, impl_->device_scene.constants.light_count);
+    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
+    return trace_waves(wavefront, camera_constants(impl_->camera, resolution), settings, crop, film, progress);
+}
+
+}  // namespace sahl

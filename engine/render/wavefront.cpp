@@ -1,0 +1,184 @@
+#include "engine/render/wavefront.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace sahl {
+namespace {
+
+/// A batch that waits to be traced.
+struct WaitingBatch {
+    std::uint32_t slot;  ///< in RayQueues::batches
+    std::uint32_t count;
+    std::uint32_t generation;
+};
+
+/// Contributions on their way to the film: ready once the commands queued before them have run.
+struct PendingContributions {
+    Mapping<float> light;
+    Mapping<std::uint32_t> pixels;
+    std::uint32_t count;
+};
+
+void add_to_film(std::optional<PendingContributions>& pending, std::uint32_t capacity, Film& film) {
+    if (!pending) {
+        return;
+    }
+    pending->light.wait();
+    pending->pixels.wait();
+    const float* light = pending->light.data();
+    film.add({pending->pixels.data(), pending->count}, light, light + capacity, light + 2 * std::size_t{capacity});
+    pending.reset();
+}
+
+
+/// Launches the kernels of one generation on a batch of rays.
+class GenerationLauncher {
+public:
+    explicit GenerationLauncher(Wavefront& wavefront)
+        : kernels_(wavefront.kernels),
+          scene_(wavefront.scene),
+          queues_(wavefront.queues),
+          rays_per_item_(wavefront.device.rays_per_item()) {}
+
+    void generate(const device::CameraConstants& camera, const device::WaveConstants& wave, RayBatch& batch) {
+        kernels_.generate.launch(per_ray(0, wave.count), camera, wave, batch.rays, batch.ids, queues_.capacity);
+    }
+
+    /// `next` may be the batch itself: children are staged. Both `next` and `waiting` are written
+    /// only where `spawn`.
+    void trace(const WaitingBatch& in_work, bool spawn, Contributions& out, RayBatch& next, RayBatch& waiting) {
+        const RayBatch& batch = queues_.batches[in_work.slot];
+        RayQueues& q = queues_;
+        const std::uint32_t count = in_work.count;
+        const std::uint32_t blocks = (count + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
+        const Launch rays = per_ray(in_work.generation, count);
+        const Launch block_launch{blocks, in_work.generation, count};
+
+        kernels_.intersect.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.constants,
+                                  batch.rays, batch.ids, q.hits, q.hit_primitives, q.capacity, count);
+        kernels_.shade.launch(rays, scene_.primitives, scene_.shape_data, scene_.materials, scene_.lights,
+                              scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives, out.light, out.pixels,
+                              q.shadow_surfaces, q.shadow_light, q.children, q.child_ids, q.outcomes, q.capacity,
+                              count, spawn ? 1U : 0U);
+        kernels_.shadow.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.primitives,
+                               scene_.materials, scene_.lights, scene_.constants, q.hit_primitives, q.shadow_surfaces,
+                               q.shadow_light, q.outcomes, out.light, q.capacity, count);
+        kernels_.count_children.launch(block_launch, q.outcomes, q.block_counts, q.block_shadow_rays, count, blocks);
+        kernels_.sum_children.launch({1, in_work.generation, blocks}, q.block_counts, q.block_shadow_rays, q.totals,
+                                     blocks);
+        if (spawn) {
+            kernels_.compact.launch(block_launch, q.children, q.child_ids, q.outcomes, q.block_counts, next.rays,
+                                    next.ids, waiting.rays, waiting.ids, q.capacity, count, blocks);
+        }
+    }
+
+private:
+    Launch per_ray(std::uint32_t generation, std::uint32_t count) const {
+        return {(count + rays_per_item_ - 1) / rays_per_item_, generation, count};
+    }
+
+    WavefrontKernels& kernels_;
+    const DeviceScene& scene_;
+    RayQueues& queues_;
+    std::uint32_t rays_per_item_;
+};
+
+device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop) {
+    device::WaveConstants wave{};
+    wave.spp = static_cast<std::uint32_t>(settings.spp);
+    wave.crop_x = static_cast<std::uint32_t>(crop.x0);
+    wave.crop_y = static_cast<std::uint32_t>(crop.y0);
+    wave.crop_width = static_cast<std::uint32_t>(crop.x1 - crop.x0);
+    wave.crop_height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
+    wave.seed_low = static_cast<std::uint32_t>(settings.seed);
+    wave.seed_high = static_cast<std::uint32_t>(settings.seed >> 32U);
+    return wave;
+}
+
+}  // namespace
+
+WavefrontKernels::WavefrontKernels(Program& program)
+    : generate(program.kernel("generate")),
+      intersect(program.kernel("intersect")),
+      shade(program.kernel("shade")),
+      shadow(program.kernel("shadow")),
+      count_children(program.kernel("count_children")),
+      sum_children(program.kernel("sum_children")),
+      compact(program.kernel("compact")) {}
+
+RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
+                             const RenderSettings& settings, const Crop& crop, Film& film,
+                             const ProgressCallback& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    RayQueues& queues = wavefront.queues;
+    GenerationLauncher launcher(wavefront);
+    device::WaveConstants wave = wave_constants(settings, crop);
+    const std::uint64_t samples = std::uint64_t{wave.crop_width} * wave.crop_height * wave.spp;
+    const auto depth = static_cast<std::uint32_t>(settings.depth);
+
+    RenderStatistics statistics;
+    statistics.generations.resize(depth + 1);
+    std::optional<PendingContributions> pending;
+    std::vector<WaitingBatch> stack;
+    std::vector<std::uint32_t> free_slots;
+    for (std::uint32_t slot = depth + 1; slot-- > 0;) {
+        free_slots.push_back(slot);
+    }
+    int side = 0;
+
+    for (std::uint64_t done = 0; done < samples; done += wave.count) {
+        wave.first_low = static_cast<std::uint32_t>(done);
+        wave.first_high = static_cast<std::uint32_t>(done >> 32U);
+        wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(queues.capacity, samples - done));
+        stack.push_back({free_slots.back(), wave.count, 0});
+        free_slots.pop_back();
+        launcher.generate(camera, wave, queues.batches[stack.back().slot]);
+
+        while (!stack.empty()) {
+            const WaitingBatch batch = stack.back();
+            stack.pop_back();
+            const bool spawn = batch.generation < depth;
+            Contributions& out = queues.contributions[side];
+            RayBatch& next = queues.batches[batch.slot];
+            RayBatch& waiting = queues.batches[spawn ? free_slots.back() : batch.slot];
+            launcher.trace(batch, spawn, out, next, waiting);
+            PendingContributions produced{
+                out.light.enqueue_map<float>(MapMode::read, 3 * std::size_t{queues.capacity}),
+                out.pixels.enqueue_map<std::uint32_t>(MapMode::read, batch.count), batch.count};
+            auto totals = queues.totals.enqueue_map<std::uint32_t>(MapMode::read, 3);
+            wavefront.device.flush();
+
+            // The host adds the last generation to the film while the device works on this one.
+            add_to_film(pending, queues.capacity, film);
+            pending.emplace(std::move(produced));
+            side = 1 - side;
+
+            totals.wait();
+            GenerationCounts& counts = statistics.generations[batch.generation];
+            counts.rays += batch.count;
+            counts.shadow_rays += totals[1] | std::uint64_t{totals[2]} << 32U;
+            const std::uint32_t children = spawn ? totals[0] : 0;
+            if (children > queues.capacity) {
+                stack.push_back({free_slots.back(), children - queues.capacity, batch.generation + 1});
+                free_slots.pop_back();
+            }
+            if (children > 0) {
+                stack.push_back({batch.slot, std::min(children, queues.capacity), batch.generation + 1});
+            } else {
+                free_slots.push_back(batch.slot);
+            }
+        }
+        if (progress) {
+            progress(done + wave.count, samples);
+        }
+    }
+    add_to_film(pending, queues.capacity, film);
+    statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return statistics;
+}
+
+}  // namespace sahl

@@ -1,0 +1,33 @@
+// The wavefront loop: ray batches, one kernel after the other, generation by generation.
+#pragma once
+
+#include "engine/device/program.h"
+#include "engine/film/film.h"
+#include "engine/render/device_scene.h"
+#include "engine/render/ray_queues.h"
+#include "engine/render/renderer.h"
+
+namespace sahl {
+
+/// The kernels of kernels/*.cl.
+struct WavefrontKernels {
+    explicit WavefrontKernels(Program& program);
+
+    Kernel generate, intersect, shade, shadow, count_children, sum_children, compact;
+};
+
+/// What the loop works with; all of it outlives the loop.
+struct Wavefront {
+    Device& device;
+    WavefrontKernels& kernels;
+    const DeviceScene& scene;
+    RayQueues& queues;
+};
+
+/// Generates all camera samples of `settings`, wave by wave, follows their ray trees and adds every
+/// contribution to `film`.
+RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
+                             const RenderSettings& settings, const Crop& crop, Film& film,
+                             const ProgressCallback& progress);
+
+}  // namespace sahl

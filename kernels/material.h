@@ -1,0 +1,48 @@
+// Whitted's surface: Phong or Blinn light, mirror direction, Snell's law.
+#ifndef SAHL_MATERIAL_H
+#define SAHL_MATERIAL_H
+
+#include "kernels/device_types.h"
+#include "kernels/math.h"
+
+/// Light sent towards `wo` of what arrives from `wi` (both unit, away from the surface).
+/// Phong (1975): (R·V)^n, gated by N·L > 0. Blinn (1977): (N·H)^n, ungated.
+/// With interpolated normals a light can be above `ns` and below the surface; it is not cut off
+/// here, the shadow ray decides (see Hanika 2021 for the terminator this leaves).
+static inline float3 phong_light(const global DeviceMaterial* material, float3 ns, float3 wi, float3 wo) {
+    float cosine = dot3(ns, wi);
+    float3 light = load3(material->diffuse) * SAHL_MAX(cosine, 0.0f);
+    float3 specular = load3(material->specular);
+    if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) {
+        return light;
+    }
+    float lobe = 0.0f;
+    if (material->flags & SAHL_MATERIAL_BLINN) {
+        float3 h = wi + wo;
+        float length2 = dot3(h, h);
+        lobe = length2 > 0.0f ? power(SAHL_MAX(dot3(ns, h) / sqrt(length2), 0.0f), material->shininess) : 0.0f;
+    } else if (cosine > 0.0f) {
+        float3 r = ns * (2.0f * cosine) - wi;
+        lobe = power(SAHL_MAX(dot3(r, wo), 0.0f), material->shininess);
+    }
+    return light + specular * lobe;
+}
+
+/// The mirror direction of `d` at normal `n` (either side).
+static inline float3 reflected_direction(float3 d, float3 n) {
+    return normalize3(d - n * (2.0f * dot3(d, n)));
+}
+
+/// Snell's law: the direction of `d` behind a surface with unit normal `n` against d; eta is the
+/// index on d's side over the other's. False on total internal reflection.
+static inline bool refracted_direction(float3 d, float3 n, float eta, float3* refracted) {
+    float cosine = -dot3(d, n);
+    float k = 1.0f - eta * eta * (1.0f - cosine * cosine);
+    if (k < 0.0f) {
+        return false;
+    }
+    *refracted = normalize3(d * eta + n * (eta * cosine - sqrt(k)));
+    return true;
+}
+
+#endif

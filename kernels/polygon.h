@@ -1,0 +1,59 @@
+// Ray intersection with planar polygons, convex or concave, one ray against a block of four.
+//
+// The distance comes from the plane. Inside or outside is decided by crossings of the sheared
+// vertices (the shear of triangle.h) with the half-axis y = 0, x > 0; edge functions are computed
+// as for triangles and edges of value 0 count as inside, so polygons that share edges with
+// polygons or triangles leak nothing between them.
+#ifndef SAHL_POLYGON_H
+#define SAHL_POLYGON_H
+
+#include "kernels/hit.h"
+#include "kernels/simd.h"
+#include "kernels/triangle.h"
+
+/// A vertex in the ray's shear.
+static inline float2 sheared_vertex(const global float* vertex, const RayShear* shear) {
+    float z = vertex[shear->kz] - shear->oz;
+    return (float2)(fma(z, shear->sx, vertex[shear->kx] - shear->ox), fma(z, shear->sy, vertex[shear->ky] - shear->oy));
+}
+
+/// Whether the ray passes through the polygon or exactly through its outline.
+static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear) {
+    bool inside = false;
+    float2 a = sheared_vertex(vertices + 3u * (count - 1u), shear);
+    for (uint i = 0; i < count; ++i) {
+        float2 b = sheared_vertex(vertices + 3u * i, shear);
+        float edge = a.x * b.y - a.y * b.x;
+        bool spans = SAHL_MIN(a.x, b.x) <= 0.0f && SAHL_MAX(a.x, b.x) >= 0.0f && SAHL_MIN(a.y, b.y) <= 0.0f &&
+                     SAHL_MAX(a.y, b.y) >= 0.0f;
+        if (edge == 0.0f && spans) {
+            return true;
+        }
+        if ((a.y > 0.0f) != (b.y > 0.0f) && (edge > 0.0f) == (b.y > a.y)) {
+            inside = !inside;
+        }
+        a = b;
+    }
+    return inside;
+}
+
+static inline void intersect_polygons(const global PolygonBlock* block, const global float* polygon_vertices, const Ray* ray,
+                               const RayShear* shear, HitState* state, bool any_hit) {
+    float4 nx = vload4(0, block->normal_x), ny = vload4(0, block->normal_y), nz = vload4(0, block->normal_z);
+    float4 px = vload4(0, block->x) - ray->origin.x;
+    float4 py = vload4(0, block->y) - ray->origin.y;
+    float4 pz = vload4(0, block->z) - ray->origin.z;
+    float4 t = (nx * px + ny * py + nz * pz) / (nx * ray->direction.x + ny * ray->direction.y + nz * ray->direction.z);
+    uint lanes = mask4((t >= state->t_min) & (t <= state->t));
+    while (lanes != 0u) {
+        uint lane = lowest_lane(lanes);
+        lanes &= lanes - 1u;
+        uint id = block->id[lane];
+        const global float* vertices = polygon_vertices + 3u * block->first_vertex[lane];
+        if ((id & SAHL_ID_MASK) != ray->exclude && polygon_contains(vertices, block->vertex_count[lane], shear)) {
+            offer_hit(state, ((float*)&t)[lane], 0.0f, 0.0f, id, any_hit);
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,45 @@
+// Ray batches, hits and children as structures of arrays (device_types.h), and the range of rays
+// that a work-item handles.
+#ifndef SAHL_RAY_BATCH_H
+#define SAHL_RAY_BATCH_H
+
+#include "kernels/device_types.h"
+#include "kernels/hit.h"
+
+// Each work-item takes SAHL_RAYS_PER_ITEM neighbours one after the other: many on a CPU, where a
+// work-group costs more than a ray, one on a GPU. The host gives it.
+#define SAHL_FOR_EACH_RAY(i, count)                                                                       \
+    for (uint i = (uint)get_global_id(0) * SAHL_RAYS_PER_ITEM,                                            \
+              i##_end = SAHL_MIN(i + SAHL_RAYS_PER_ITEM, (count));                                        \
+         i < i##_end; ++i)
+
+static inline float3 load_soa3(const global float* arrays, uint first, uint capacity, uint i) {
+    const global float* p = arrays + (size_t)first * capacity + i;
+    return (float3)(p[0], p[capacity], p[2u * (size_t)capacity]);
+}
+
+static inline void store_soa3(global float* arrays, uint first, uint capacity, uint i, float3 v) {
+    global float* p = arrays + (size_t)first * capacity + i;
+    p[0] = v.x;
+    p[capacity] = v.y;
+    p[2u * (size_t)capacity] = v.z;
+}
+
+static inline Ray load_ray(const global float* rays, const global uint* ray_ids, uint capacity, uint i) {
+    Ray ray;
+    ray.origin = load_soa3(rays, SAHL_RAY_ORIGIN, capacity, i);
+    ray.direction = load_soa3(rays, SAHL_RAY_DIRECTION, capacity, i);
+    ray.exclude = ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i];
+    return ray;
+}
+
+static inline void store_ray(global float* rays, global uint* ray_ids, uint capacity, uint i, Ray ray, float3 weight,
+                      uint pixel) {
+    store_soa3(rays, SAHL_RAY_ORIGIN, capacity, i, ray.origin);
+    store_soa3(rays, SAHL_RAY_DIRECTION, capacity, i, ray.direction);
+    store_soa3(rays, SAHL_RAY_WEIGHT, capacity, i, weight);
+    ray_ids[(size_t)SAHL_RAY_PIXEL * capacity + i] = pixel;
+    ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i] = ray.exclude;
+}
+
+#endif

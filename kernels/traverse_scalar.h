@@ -1,0 +1,106 @@
+// Traversal of the 8-wide tree by one ray at a time: a node's eight boxes in one step, leaves of
+// four primitives in one step, a stack of waiting children in private memory.
+//
+// Children are visited in the order of their slots permuted by the ray's octant, which is front to
+// back (Ylitie, Karras, Laine 2017, sec. 3.2), so that nothing is sorted; waiting children behind
+// the hit are dropped when they are popped.
+// Pro: any device, any ray, one body for closest and any hit. Con: each node step waits for its
+// memory; nothing is shared between neighbouring rays.
+#ifndef SAHL_TRAVERSE_SCALAR_H
+#define SAHL_TRAVERSE_SCALAR_H
+
+#include "kernels/bvh.h"
+#include "kernels/polygon.h"
+#include "kernels/quadric.h"
+#include "kernels/sphere.h"
+#include "kernels/triangle.h"
+
+// A hit's distance may be too short by its own rounding; boxes are culled only beyond this much
+// more, and the boxes' addends (bvh.h) leave room for the rest.
+#define SAHL_CULL_SLACK (1.0f + 0x1p-20f)
+
+static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear, HitState* state,
+                           bool any_hit) {
+    ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
+    const global uchar* block = bvh->leaves + offset;
+    switch (child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK) {
+        case SAHL_KIND_TRIANGLE:
+            intersect_triangles((const global TriangleBlock*)block, ray, shear, state, any_hit);
+            break;
+        case SAHL_KIND_SPHERE:
+            intersect_spheres((const global SphereBlock*)block, ray, state, any_hit);
+            break;
+        case SAHL_KIND_ELLIPSOID:
+            intersect_ellipsoids((const global QuadricBlock*)block, ray, state, any_hit);
+            break;
+        case SAHL_KIND_CONE:
+            intersect_cones((const global QuadricBlock*)block, ray, state, any_hit);
+            break;
+        case SAHL_KIND_POLYGON:
+            intersect_polygons((const global PolygonBlock*)block, bvh->polygon_vertices, ray, shear, state, any_hit);
+            break;
+    }
+}
+
+/// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of
+/// surface there are (it stops at an opaque one). Rays that are not finite or have no direction
+/// meet nothing.
+static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool any_hit) {
+    float magnitude = max_abs3(ray->direction);
+    if (!(magnitude > 0.0f) || !isfinite(dot3(ray->direction, (float3)(1.0f))) ||
+        !isfinite(dot3(ray->origin, (float3)(1.0f)))) {
+        return;
+    }
+    const RayBoxTest test = ray_box_test(ray->origin, ray->direction, bvh->extent);
+    const RayShear shear = ray_shear(ray->origin, ray->direction);
+    uint waiting[SAHL_STACK_SIZE];
+    float entries[SAHL_STACK_SIZE];
+    uint size = 0;
+    uint current = 0;
+    float cull_t = state->t * SAHL_CULL_SLACK;
+    for (;;) {
+        if (current & SAHL_CHILD_LEAF) {
+            intersect_leaf(bvh, current, ray, &shear, state, any_hit);
+            if (any_hit && (state->occlusion & SAHL_HIT_OPAQUE)) {
+                return;
+            }
+            cull_t = state->t * SAHL_CULL_SLACK;
+        } else {
+            const global BvhNode* node = bvh->nodes + current;
+            float8 entry;
+            uint hit = intersect_children(node, &test, state->t_min, cull_t, &entry);
+            uint order = permute_by_octant(hit, test.octant);
+            while (order != 0u) {
+                uint position = highest_lane(order);
+                order ^= 1u << position;
+                uint slot = position ^ test.octant;
+                waiting[size] = node->child[slot];
+                entries[size] = ((float*)&entry)[slot];
+                ++size;
+            }
+        }
+        do {
+            if (size == 0u) {
+                return;
+            }
+            --size;
+        } while (entries[size] > cull_t);
+        current = waiting[size];
+    }
+}
+
+/// The first hit with t_min < t < t_max; its primitive is SAHL_NO_PRIMITIVE when there is none.
+static inline HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState range) {
+    traverse(bvh, ray, &range, false);
+    return range;
+}
+
+/// SAHL_HIT_OPAQUE, SAHL_HIT_TRANSPARENT (at least one, nothing opaque) or SAHL_HIT_NOTHING in
+/// 0 < t < t_max.
+static inline uint any_hit(const Bvh* bvh, const Ray* ray, float t_max) {
+    HitState state = hit_state(0.0f, t_max);
+    traverse(bvh, ray, &state, true);
+    return state.occlusion & SAHL_HIT_OPAQUE ? SAHL_HIT_OPAQUE : state.occlusion;
+}
+
+#endif
