@@ -3,18 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <span>
 #include <vector>
 
+#include "engine/accel/bounds.h"
 #include "kernels/device_types.h"
 
 namespace sahl {
-
-struct Bounds {
-    float lo[3];
-    float hi[3];
-};
 
 /// What the builder knows of a primitive. Bounds must contain it, rounding included.
 struct BuildPrimitive {
@@ -23,30 +17,34 @@ struct BuildPrimitive {
     std::uint32_t id = 0;    ///< index in Scene::primitives
 };
 
+/// `sah_cost` is the sum over nodes of area / root area, plus the same over leaves times 1 (triangles,
+/// spheres), 1.5 (ellipsoids, cones) or 2 (polygons), see cost_model.h. In a tree whose root box is
+/// a line or a point every box counts as visited.
 struct BvhStatistics {
     std::uint64_t primitives = 0;
     std::uint64_t nodes = 0;
     std::uint64_t leaves = 0;
-    int depth = 0;            ///< levels of 8-wide nodes
-    double sah_cost = 0;      ///< expected node plus block visits of a random ray that hits the root box
-    double leaf_fill = 0;     ///< primitives per leaf, of 4
+    int depth = 0;         ///< levels of 8-wide nodes
+    double sah_cost = 0;   ///< expected cost of a random ray that hits the root box, see below
+    double leaf_fill = 0;  ///< primitives per leaf, of 4
     double build_seconds = 0;
 };
 
 /// A leaf of the wide tree: one block.
 struct BvhLeaf {
     std::uint32_t kind = 0;
-    std::uint32_t count = 0;     ///< 1..4
-    std::uint32_t ids[4] = {};   ///< ascending
+    std::uint32_t count = 0;    ///< 1..4
+    std::uint32_t ids[4] = {};  ///< ascending
 };
 
 /// Nodes in depth-first order, [0] the root. Leaf children carry SAHL_CHILD_LEAF, the kind, and a
-/// line offset: leaf k's block starts where the blocks of leaves 0..k-1 end (block_lines()).
+/// line offset. Leaves are numbered as depth-first visits of the slots 0..7 meet them; leaf k's block starts
+/// where the blocks of leaves 0..k-1 end (block_lines()).
 struct Bvh {
     std::vector<device::BvhNode> nodes;
     std::vector<BvhLeaf> leaves;
     std::uint32_t leaf_lines = 0;  ///< size of the leaf buffer in lines of 64 bytes
-    Bounds bounds{};
+    Bounds bounds{};               ///< of all primitives; zeros if there are none
     BvhStatistics statistics;
 };
 
@@ -55,7 +53,8 @@ std::uint32_t block_lines(std::uint32_t kind);
 
 /// Builds the tree. The same primitives give the same tree, bit for bit, whatever the number of
 /// threads. No primitives: a root whose slots are all empty.
-/// Throws Error(scene) when the leaf buffer would exceed 2^28 lines.
+/// Bounds must be finite; a box may be flat or a point. Throws Error(scene) when the leaf buffer
+/// would exceed 2^28 lines or there are more than SAHL_MAX_PRIMITIVES.
 /// Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies" (binning);
 /// Ylitie, Karras, Laine 2017, sec. 3 (octant-ordered slots).
 Bvh build_bvh(std::vector<BuildPrimitive> primitives);

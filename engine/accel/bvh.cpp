@@ -1,0 +1,99 @@
+#include "engine/accel/bvh.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "engine/accel/binary_tree.h"
+#include "engine/accel/cost_model.h"
+#include "engine/accel/wide_collapse.h"
+#include "engine/core/error.h"
+
+namespace sahl {
+
+namespace {
+
+void check(const std::vector<BuildPrimitive>& primitives) {
+    if (primitives.size() > SAHL_MAX_PRIMITIVES) {
+        throw Error(ExitCode::scene, "the scene has " + std::to_string(primitives.size()) +
+                                         " primitives; the limit is " + std::to_string(SAHL_MAX_PRIMITIVES) +
+                                         ": render fewer");
+    }
+    for (const BuildPrimitive& primitive : primitives) {
+        if (primitive.kind < kind_count) continue;
+        throw Error(ExitCode::internal, "primitive " + std::to_string(primitive.id) + " is of unknown kind " +
+                                            std::to_string(primitive.kind) + "; please report this");
+    }
+}
+
+// -0 becomes +0: as -0 == +0, which of them a minimum keeps would depend on the order.
+void remove_negative_zeros(std::vector<BuildPrimitive>& primitives) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, primitives.size(), 1u << 14),
+                      [&](const auto& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              for (float& value : primitives[i].bounds.lo) value += 0.0f;
+                              for (float& value : primitives[i].bounds.hi) value += 0.0f;
+                          }
+                      });
+}
+
+Bounds slot_bounds(const device::BvhNode& node, std::size_t slot) {
+    return {{node.lo_x[slot], node.lo_y[slot], node.lo_z[slot]},
+            {node.hi_x[slot], node.hi_y[slot], node.hi_z[slot]}};
+}
+
+// Depth-first order puts parents before children: levels are known in one pass.
+BvhStatistics measure(const Bvh& bvh) {
+    BvhStatistics statistics;
+    statistics.nodes = bvh.nodes.size();
+    statistics.leaves = bvh.leaves.size();
+    const double root_area = half_area(bvh.bounds);
+    std::vector<int> levels(bvh.nodes.size(), 1);
+    double cost = node_visit_cost;
+    for (std::size_t i = 0; i < bvh.nodes.size(); ++i) {
+        statistics.depth = std::max(statistics.depth, levels[i]);
+        for (std::size_t slot = 0; slot < 8; ++slot) {
+            const Bounds bounds = slot_bounds(bvh.nodes[i], slot);
+            const std::uint32_t child = bvh.nodes[i].child[slot];
+            if (bounds.lo[0] > bounds.hi[0]) continue;
+            const double visits = root_area > 0 ? half_area(bounds) / root_area : 1.0;
+            const bool leaf = (child & SAHL_CHILD_LEAF) != 0;
+            const std::uint32_t kind = child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK;
+            cost += visits * (leaf ? block_costs[kind] : node_visit_cost);
+            if (!leaf) levels[child] = levels[i] + 1;
+        }
+    }
+    statistics.sah_cost = cost / node_visit_cost;
+    for (const BvhLeaf& leaf : bvh.leaves) statistics.primitives += leaf.count;
+    if (statistics.leaves > 0) {
+        statistics.leaf_fill =
+            static_cast<double>(statistics.primitives) / static_cast<double>(statistics.leaves);
+    }
+    return statistics;
+}
+
+}  // namespace
+
+Bvh build_bvh(std::vector<BuildPrimitive> primitives) {
+    const auto start = std::chrono::steady_clock::now();
+    check(primitives);
+    Bvh bvh;
+    if (primitives.empty()) {
+        bvh.nodes.push_back(empty_node());
+    } else {
+        remove_negative_zeros(primitives);
+        collapse(build_binary_tree(primitives), primitives, bvh);
+        bvh.bounds = empty_bounds();
+        for (std::size_t slot = 0; slot < 8; ++slot) extend(bvh.bounds, slot_bounds(bvh.nodes[0], slot));
+    }
+    bvh.statistics = measure(bvh);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    bvh.statistics.build_seconds = seconds.count();
+    return bvh;
+}
+
+}  // namespace sahl

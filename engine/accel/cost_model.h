@@ -1,0 +1,33 @@
+// What the surface area heuristic counts: visits, in units of half a node visit.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "kernels/device_types.h"
+
+namespace sahl {
+
+inline constexpr std::size_t kind_count = 5;
+
+/// Primitives by SAHL_KIND_*.
+using KindCounts = std::array<std::uint32_t, kind_count>;
+
+inline constexpr std::uint32_t node_visit_cost = 2;
+
+/// The cost of testing a ray against one block. A node is four lines and 8 slab tests. Triangle
+/// and sphere blocks load less and compute about as much in one float4 pass; a quadric block adds
+/// a 3x3 transform and loads four lines; a polygon block fetches its vertices one by one.
+inline constexpr std::array<std::uint32_t, kind_count> block_costs{2, 2, 3, 3, 4};
+
+/// The cost of testing everything, as if the primitives of a kind fill their blocks.
+inline std::uint32_t blocks_cost(const KindCounts& counts) {
+    std::uint32_t cost = 0;
+    for (std::size_t kind = 0; kind < kind_count; ++kind) {
+        cost += block_costs[kind] * ((counts[kind] + SAHL_BLOCK_WIDTH - 1) / SAHL_BLOCK_WIDTH);
+    }
+    return cost;
+}
+
+}  // namespace sahl
