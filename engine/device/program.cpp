@@ -16,7 +16,8 @@ namespace sahl {
 
 struct Program::Impl {
     Device& device;
-    std::string key;
+    KernelSource source;
+    std::string options;
     cl::Program program;
     bool from_cache = false;
     std::set<std::string> cached;    ///< kernels whose compiled code is in the cache's binary
@@ -77,34 +78,37 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
                             device.info().driver, options, annotate_build_log(log, source)));
 }
 
-std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
+std::shared_ptr<Program::Impl> build(Device& device, KernelSource source, const std::string& more) {
     std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
     if (!more.empty()) options += " " + more;
     std::shared_ptr<Program::Impl> impl(
-        new Program::Impl{device, cache_key(device, source, options), {}, false, {}, {}});
-    if (const auto cached = load_program(impl->key)) {
-        impl->program = build_from_binary(device, cached->binary, options);
+        new Program::Impl{device, std::move(source), std::move(options), {}, false, {}, {}});
+    if (const auto cached = load_program(cache_key(device, impl->source, impl->options))) {
+        impl->program = build_from_binary(device, cached->binary, impl->options);
         impl->from_cache = impl->program() != nullptr;
         if (impl->from_cache) impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
     }
-    if (!impl->from_cache) impl->program = build_from_source(device, source, options);
+    if (!impl->from_cache) impl->program = build_from_source(device, impl->source, impl->options);
     return impl;
 }
 
 }  // namespace
 
 void Program::Impl::store() noexcept try {
-    // A binary of PoCL has the compiled code of the kernels launched so far; asking for it makes
-    // PoCL compile every kernel once more for any local size (the price of the first run).
-    const bool complete = std::includes(cached.begin(), cached.end(), launched.begin(), launched.end());
-    if (launched.empty() || (from_cache && (complete || !device.info().is_pocl)) || (!from_cache && complete))
-        return;
+    if (std::includes(cached.begin(), cached.end(), launched.begin(), launched.end())) return;
+    const bool is_pocl = device.info().is_pocl;
+    if (from_cache && !is_pocl) return;  // such a binary holds all kernels from the start
     device.impl().queue.finish();
+    // PoCL answers with the binary that a program came from or gave before, without what it has
+    // compiled since; a second program of the same source finds all of that in PoCL's folder.
+    // (For a binary PoCL also compiles each kernel for any local size: the first run's price.)
+    const cl::Program whole = is_pocl ? build_from_source(device, source, options) : program;
     cl_int status = CL_SUCCESS;
-    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>(&status);
+    const auto binaries = whole.getInfo<CL_PROGRAM_BINARIES>(&status);
     if (status != CL_SUCCESS || binaries.size() != 1 || binaries[0].empty()) return;
     cached.insert(launched.begin(), launched.end());
-    store_program(key, {std::string(binaries[0].begin(), binaries[0].end()), {cached.begin(), cached.end()}});
+    store_program(cache_key(device, source, options),
+                  {std::string(binaries[0].begin(), binaries[0].end()), {cached.begin(), cached.end()}});
 } catch (...) {
     // What is not cached is compiled again in the next run.
 }

@@ -1,0 +1,178 @@
+#include <catch2/catch.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/device/kernel_source.h"
+#include "engine/device/program.h"
+#include "kernels/device_types.h"
+
+namespace sahl::tests {
+namespace {
+
+/// A struct (no field: its size) or a field of one (its offset), as the host's compiler lays it out.
+struct Layout {
+    std::string type;
+    std::string field;
+    std::size_t bytes;
+};
+
+#define SIZE(type) \
+    Layout { #type, "", sizeof(device::type) }
+#define FIELD(type, field) \
+    Layout { #type, #field, offsetof(device::type, field) }
+
+const std::vector<Layout> kLayouts = {
+    SIZE(BvhNode),
+    FIELD(BvhNode, lo_x),
+    FIELD(BvhNode, lo_y),
+    FIELD(BvhNode, lo_z),
+    FIELD(BvhNode, hi_x),
+    FIELD(BvhNode, hi_y),
+    FIELD(BvhNode, hi_z),
+    FIELD(BvhNode, child),
+    FIELD(BvhNode, spare),
+    SIZE(TriangleBlock),
+    FIELD(TriangleBlock, x),
+    FIELD(TriangleBlock, id),
+    FIELD(TriangleBlock, y),
+    FIELD(TriangleBlock, spare_y),
+    FIELD(TriangleBlock, z),
+    FIELD(TriangleBlock, spare_z),
+    SIZE(SphereBlock),
+    FIELD(SphereBlock, x),
+    FIELD(SphereBlock, y),
+    FIELD(SphereBlock, z),
+    FIELD(SphereBlock, radius),
+    FIELD(SphereBlock, id),
+    FIELD(SphereBlock, spare),
+    SIZE(QuadricBlock),
+    FIELD(QuadricBlock, m),
+    FIELD(QuadricBlock, x),
+    FIELD(QuadricBlock, y),
+    FIELD(QuadricBlock, z),
+    FIELD(QuadricBlock, slope),
+    FIELD(QuadricBlock, id),
+    FIELD(QuadricBlock, spare),
+    SIZE(PolygonBlock),
+    FIELD(PolygonBlock, normal_x),
+    FIELD(PolygonBlock, normal_y),
+    FIELD(PolygonBlock, normal_z),
+    FIELD(PolygonBlock, x),
+    FIELD(PolygonBlock, y),
+    FIELD(PolygonBlock, z),
+    FIELD(PolygonBlock, first_vertex),
+    FIELD(PolygonBlock, vertex_count),
+    FIELD(PolygonBlock, id),
+    FIELD(PolygonBlock, spare),
+    SIZE(DevicePrimitive),
+    FIELD(DevicePrimitive, kind),
+    FIELD(DevicePrimitive, material),
+    FIELD(DevicePrimitive, data),
+    FIELD(DevicePrimitive, flags),
+    SIZE(DeviceMaterial),
+    FIELD(DeviceMaterial, emitted),
+    FIELD(DeviceMaterial, shininess),
+    FIELD(DeviceMaterial, diffuse),
+    FIELD(DeviceMaterial, ior),
+    FIELD(DeviceMaterial, specular),
+    FIELD(DeviceMaterial, flags),
+    FIELD(DeviceMaterial, reflection),
+    FIELD(DeviceMaterial, spare0),
+    FIELD(DeviceMaterial, transmission),
+    FIELD(DeviceMaterial, spare1),
+    SIZE(DeviceLight),
+    FIELD(DeviceLight, position),
+    FIELD(DeviceLight, kind),
+    FIELD(DeviceLight, color),
+    FIELD(DeviceLight, spare0),
+    FIELD(DeviceLight, attenuation),
+    FIELD(DeviceLight, spare1),
+    SIZE(SceneConstants),
+    FIELD(SceneConstants, background),
+    FIELD(SceneConstants, extent),
+    FIELD(SceneConstants, light_count),
+    FIELD(SceneConstants, spare),
+    SIZE(CameraConstants),
+    FIELD(CameraConstants, eye),
+    FIELD(CameraConstants, half_width),
+    FIELD(CameraConstants, forward),
+    FIELD(CameraConstants, half_height),
+    FIELD(CameraConstants, step_x),
+    FIELD(CameraConstants, spare0),
+    FIELD(CameraConstants, step_y),
+    FIELD(CameraConstants, spare1),
+    SIZE(WaveConstants),
+    FIELD(WaveConstants, first_low),
+    FIELD(WaveConstants, first_high),
+    FIELD(WaveConstants, count),
+    FIELD(WaveConstants, spp),
+    FIELD(WaveConstants, crop_x),
+    FIELD(WaveConstants, crop_y),
+    FIELD(WaveConstants, crop_width),
+    FIELD(WaveConstants, crop_height),
+    FIELD(WaveConstants, seed_low),
+    FIELD(WaveConstants, seed_high),
+    FIELD(WaveConstants, spare),
+};
+
+/// The structs of device_types.h and their fields, by its text.
+std::map<std::string, std::set<std::string>> declared() {
+    std::string text = expand_files({"device_types.h"}).text;
+    text = std::regex_replace(text, std::regex("//[^\n]*"), "");
+    std::map<std::string, std::set<std::string>> result;
+    const std::regex type(R"(typedef struct \{([^}]*)\} (\w+);)");
+    const std::regex field(R"((\w+)(\[\d+\])*\s*[,;])");
+    for (std::sregex_iterator found(text.begin(), text.end(), type), end; found != end; ++found) {
+        const std::string body = (*found)[1];
+        std::set<std::string>& fields = result[(*found)[2]];
+        for (std::sregex_iterator f(body.begin(), body.end(), field); f != end; ++f) fields.insert((*f)[1]);
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("the layouts below are all of device_types.h") {
+    std::map<std::string, std::set<std::string>> listed;
+    for (const Layout& layout : kLayouts) {
+        std::set<std::string>& fields = listed[layout.type];
+        if (!layout.field.empty()) fields.insert(layout.field);
+    }
+    CHECK(listed.size() >= 11);
+    CHECK(listed == declared());
+}
+
+TEST_CASE("host and device agree about every struct they share") {
+    std::string text = "#include \"kernels/device_types.h\"\n__kernel void lay_out(__global uint* out) {\n";
+    std::string type;
+    for (std::size_t i = 0; i < kLayouts.size(); ++i) {
+        const Layout& layout = kLayouts[i];
+        if (layout.type != type) {
+            type = layout.type;
+            text += type + " a_" + type + ";\n";
+        }
+        const std::string object = "a_" + layout.type;
+        text += "out[" + std::to_string(i) + "] = ";
+        if (layout.field.empty()) {
+            text += "sizeof(" + layout.type + ");\n";
+        } else {
+            text += "(uint)((uchar*)&" + object + "." + layout.field + " - (uchar*)&" + object + ");\n";
+        }
+    }
+    Device device;
+    Program program = Program::from_text(device, text + "}\n");
+    Buffer out(device, 4 * kLayouts.size(), "layouts");
+    program.kernel("lay_out").launch({.work_items = 1}, out);
+    const auto bytes = out.map<std::uint32_t>(MapMode::read, kLayouts.size());
+    for (std::size_t i = 0; i < kLayouts.size(); ++i) {
+        CAPTURE(kLayouts[i].type, kLayouts[i].field);
+        CHECK(bytes[i] == kLayouts[i].bytes);
+    }
+}
+
+}  // namespace sahl::tests
