@@ -3,7 +3,7 @@
 #define SAHL_CAMERA_H
 
 #include "kernels/device_types.h"
-#include "kernels/math.h"
+#include "kernels/real.h"
 #include "kernels/sampling.h"
 
 // Pixels are numbered in strips of this many rows, column by column, so that neighbours in a batch
@@ -19,13 +19,18 @@ static inline uint2 crop_pixel(uint index, uint width, uint height) {
     return (uint2)(rest / rows, top + rest % rows);
 }
 
-/// Unit direction through image position `p` (pixels from the top left corner, y down).
-static inline float3 camera_direction(const CameraConstants* camera, float2 p) {
-    float x = p.x - camera->half_width, y = p.y - camera->half_height;
-    return normalize3(
-        (float3)(camera->forward[0] + x * camera->step_x[0] + y * camera->step_y[0],
-                 camera->forward[1] + x * camera->step_x[1] + y * camera->step_y[1],
-                 camera->forward[2] + x * camera->step_x[2] + y * camera->step_y[2]));
+static inline real3 camera_vector(const float* value, const float* lacking) {
+    return (real3)((real)value[0] + (real)lacking[0], (real)value[1] + (real)lacking[1],
+                   (real)value[2] + (real)lacking[2]);
+}
+
+/// Unit direction through position `in_pixel` of the pixel at (x, y), y down.
+static inline real3 camera_direction(const CameraConstants* camera, uint x, uint y, float2 in_pixel) {
+    real right = (real)x - (real)camera->half_width + (real)in_pixel.x;
+    real down = (real)y - (real)camera->half_height + (real)in_pixel.y;
+    return normalize3_real(camera_vector(camera->forward, camera->forward_low) +
+                           camera_vector(camera->step_x, camera->step_x_low) * right +
+                           camera_vector(camera->step_y, camera->step_y_low) * down);
 }
 
 #endif

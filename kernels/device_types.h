@@ -107,9 +107,11 @@ SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
 // What shading looks up by primitive id. `data` is an offset (in floats) into the shape data:
 //   triangle   vertices 0..2; if smooth also normals 0..2
 //   sphere     centre, radius
-//   ellipsoid  m (9), origin
-//   cone       m (9), origin, slope
+//   ellipsoid  rows 0..2 of m, origin
+//   cone       rows 0..2 of m, origin, slope
 //   polygon    unit normal, a point, then (bits of uints) first vertex, vertex count
+// For all but triangles each vector is three floats and the three that they lack of the double
+// precision value, each number a float and the one it lacks.
 #define SAHL_PRIMITIVE_SMOOTH 1u
 typedef struct {
     sahl_uint kind;
@@ -159,18 +161,18 @@ SAHL_STATIC_ASSERT(sizeof(SceneConstants) == 32, "SceneConstants is 32 bytes");
 // ---- Waves ------------------------------------------------------------------------------
 
 // A camera ray through image position (x, y), pixels, y down:
-// eye, normalize(forward + step_x (x - width/2) + step_y (y - height/2)).
+// eye, normalize(forward + step_x (x - width/2) + step_y (y - height/2)); each vector in two parts,
+// floats and what they lack of the double precision value.
 typedef struct {
     float eye[3];
     float half_width;  // in pixels
     float forward[3];
     float half_height;
-    float step_x[3];
-    float spare0;
-    float step_y[3];
-    float spare1;
+    float step_x[3], step_y[3];
+    float eye_low[3], forward_low[3], step_x_low[3], step_y_low[3];
+    float spare[2];
 } CameraConstants;
-SAHL_STATIC_ASSERT(sizeof(CameraConstants) == 64, "CameraConstants is 64 bytes");
+SAHL_STATIC_ASSERT(sizeof(CameraConstants) == 112, "CameraConstants is 112 bytes");
 
 // Which camera samples a wave generates: `count` of them from number `first` (low and high word)
 // on, counted pixel by pixel in the crop's tile order, `spp` a pixel.
@@ -186,10 +188,14 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 
 // Arrays of a ray batch, each `capacity` long, one after the other: SAHL_RAY_FLOATS float arrays
 // in one buffer, SAHL_RAY_UINTS uint arrays in another.
+// Traversal reads origin and direction, in single precision and off the surface; shading adds
+// what they lack of the exact ray.
 #define SAHL_RAY_ORIGIN 0
 #define SAHL_RAY_DIRECTION 3
 #define SAHL_RAY_WEIGHT 6
-#define SAHL_RAY_FLOATS 9
+#define SAHL_RAY_ORIGIN_LOW 9
+#define SAHL_RAY_DIRECTION_LOW 12
+#define SAHL_RAY_FLOATS 15
 #define SAHL_RAY_PIXEL 0    // index in the film
 #define SAHL_RAY_EXCLUDE 1  // the primitive it starts on, or SAHL_NO_PRIMITIVE
 #define SAHL_RAY_UINTS 2

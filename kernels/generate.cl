@@ -12,10 +12,8 @@ kernel void generate(const CameraConstants camera, const WaveConstants wave, glo
         uint2 pixel = crop_pixel((uint)(sample / wave.spp), wave.crop_width, wave.crop_height);
         uint x = wave.crop_x + pixel.x, y = wave.crop_y + pixel.y;
         float2 in_pixel = pixel_sample(x, y, (uint)(sample % wave.spp), wave.spp, seed);
-        Ray ray;
-        ray.origin = (float3)(camera.eye[0], camera.eye[1], camera.eye[2]);
-        ray.direction = camera_direction(&camera, (float2)((float)x, (float)y) + in_pixel);
-        ray.exclude = SAHL_NO_PRIMITIVE;
-        store_ray(rays, ray_ids, capacity, i, ray, (float3)(1.0f), pixel.y * wave.crop_width + pixel.x);
+        real3 eye = camera_vector(camera.eye, camera.eye_low);
+        store_ray(rays, ray_ids, capacity, i, round3(eye), eye, camera_direction(&camera, x, y, in_pixel),
+                  SAHL_NO_PRIMITIVE, (float3)(1.0f), pixel.y * wave.crop_width + pixel.x);
     }
 }

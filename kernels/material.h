@@ -3,7 +3,7 @@
 #define SAHL_MATERIAL_H
 
 #include "kernels/device_types.h"
-#include "kernels/math.h"
+#include "kernels/real.h"
 
 /// Light sent towards `wo` of what arrives from `wi` (both unit, away from the surface).
 /// Phong (1975): (R·V)^n, gated by N·L > 0. Blinn (1977): (N·H)^n, ungated.
@@ -13,7 +13,7 @@ static inline float3 phong_light(const global DeviceMaterial* material, float3 n
     float cosine = dot3(ns, wi);
     float3 light = load3(material->diffuse) * SAHL_MAX(cosine, 0.0f);
     float3 specular = load3(material->specular);
-    if (specular.x == 0.0f && specular.y == 0.0f && specular.z == 0.0f) {
+    if (!is_nonzero(specular)) {
         return light;
     }
     float lobe = 0.0f;
@@ -28,20 +28,20 @@ static inline float3 phong_light(const global DeviceMaterial* material, float3 n
     return light + specular * lobe;
 }
 
-/// The mirror direction of `d` at normal `n` (either side).
-static inline float3 reflected_direction(float3 d, float3 n) {
-    return normalize3(d - n * (2.0f * dot3(d, n)));
+/// The mirror direction of unit `d` at unit normal `n` (either side).
+static inline real3 reflected_direction(real3 d, real3 n) {
+    return normalize3_real(d - n * ((real)2 * dot3_real(d, n)));
 }
 
-/// Snell's law: the direction of `d` behind a surface with unit normal `n` against d; eta is the
-/// index on d's side over the other's. False on total internal reflection.
-static inline bool refracted_direction(float3 d, float3 n, float eta, float3* refracted) {
-    float cosine = -dot3(d, n);
-    float k = 1.0f - eta * eta * (1.0f - cosine * cosine);
-    if (k < 0.0f) {
+/// Snell's law: the direction of unit `d` behind a surface with unit normal `n` against d; eta is
+/// the index on d's side over the other's. False on total internal reflection.
+static inline bool refracted_direction(real3 d, real3 n, real eta, real3* refracted) {
+    real cosine = -dot3_real(d, n);
+    real k = (real)1 - eta * eta * ((real)1 - cosine * cosine);
+    if (k < (real)0) {
         return false;
     }
-    *refracted = normalize3(d * eta + n * (eta * cosine - sqrt(k)));
+    *refracted = normalize3_real(d * eta + n * (eta * cosine - sqrt(k)));
     return true;
 }
 

@@ -26,6 +26,10 @@ static inline float max_abs3(float3 v) {
     return SAHL_MAX(SAHL_MAX(a.x, a.y), a.z);
 }
 
+static inline bool is_nonzero(float3 v) {
+    return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f;
+}
+
 static inline float3 load3(const global float* p) {
     return (float3)(p[0], p[1], p[2]);
 }

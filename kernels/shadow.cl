@@ -38,7 +38,7 @@ kernel void shadow(const global BvhNode* nodes, const global uchar* leaves, cons
         float3 sum = load_soa3(contributions, 0u, capacity, i);
         for (uint l = 0; l < scene.light_count; ++l) {
             float3 brought = load_soa3(shadow_light, 3u * l, capacity, i);
-            if (brought.x == 0.0f && brought.y == 0.0f && brought.z == 0.0f) {
+            if (!is_nonzero(brought)) {
                 continue;
             }
             float3 side = vector_to_light(lights + l, position);

@@ -50,7 +50,7 @@ void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf
         block.x[k] = data[0];
         block.y[k] = data[1];
         block.z[k] = data[2];
-        block.radius[k] = data[3];
+        block.radius[k] = data[6];
         block.id[k] = id;
     });
 }
@@ -62,12 +62,12 @@ void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLea
     fill_ids(block);
     for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
         for (std::uint32_t element = 0; element < 9; ++element) {
-            block.m[element][k] = data[element];
+            block.m[element][k] = data[element / 3 * 6 + element % 3];
         }
-        block.x[k] = data[9];
-        block.y[k] = data[10];
-        block.z[k] = data[11];
-        block.slope[k] = leaf.kind == SAHL_KIND_CONE ? data[12] : 0.0F;
+        block.x[k] = data[18];
+        block.y[k] = data[19];
+        block.z[k] = data[20];
+        block.slope[k] = leaf.kind == SAHL_KIND_CONE ? data[24] : 0.0F;
         block.id[k] = id;
     });
 }
@@ -79,11 +79,11 @@ void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLea
         block.normal_x[k] = data[0];
         block.normal_y[k] = data[1];
         block.normal_z[k] = data[2];
-        block.x[k] = data[3];
-        block.y[k] = data[4];
-        block.z[k] = data[5];
-        block.first_vertex[k] = std::bit_cast<std::uint32_t>(data[6]);
-        block.vertex_count[k] = std::bit_cast<std::uint32_t>(data[7]);
+        block.x[k] = data[6];
+        block.y[k] = data[7];
+        block.z[k] = data[8];
+        block.first_vertex[k] = std::bit_cast<std::uint32_t>(data[12]);
+        block.vertex_count[k] = std::bit_cast<std::uint32_t>(data[13]);
         block.id[k] = id;
     });
 }

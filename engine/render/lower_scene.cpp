@@ -92,6 +92,16 @@ public:
 private:
     void push(const vec3& v) { out_.shape_data.insert(out_.shape_data.end(), {v.x, v.y, v.z}); }
 
+    /// A value in two parts: floats and what they lack.
+    void push_exact(const dvec3& v) {
+        push(vec3(v));
+        push(vec3(v - dvec3(vec3(v))));
+    }
+    void push_exact(double v) {
+        const auto rounded = static_cast<float>(v);
+        out_.shape_data.insert(out_.shape_data.end(), {rounded, static_cast<float>(v - rounded)});
+    }
+
     void add_triangle(const Triangle& triangle) {
         // Swapping two corners keeps the winding's normal outward under a mirroring transform.
         const int order[3] = {0, mirrored_ ? 2 : 1, mirrored_ ? 1 : 2};
@@ -121,8 +131,8 @@ private:
         if (mirrored_) {
             std::reverse(points_.begin(), points_.end());
         }
-        push(vec3(newell_normal(points_)));
-        push(points_[0]);
+        push_exact(newell_normal(points_));
+        push_exact(dvec3(points_[0]));
         const auto first_vertex = static_cast<std::uint32_t>(out_.polygon_vertices.size() / 3);
         out_.shape_data.push_back(std::bit_cast<float>(first_vertex));
         out_.shape_data.push_back(std::bit_cast<float>(polygon.vertex_count));
@@ -150,8 +160,8 @@ private:
         }
         if (deviation <= 1e-12 * radius2) {
             lowered_.kind = SAHL_KIND_SPHERE;
-            push(vec3(center));
-            out_.shape_data.push_back(static_cast<float>(std::sqrt(radius2)));
+            push_exact(center);
+            push_exact(std::sqrt(radius2));
         } else {
             lowered_.kind = SAHL_KIND_ELLIPSOID;
             push_object_space(world_from_unit, center);
@@ -181,16 +191,16 @@ private:
         }
         lowered_.kind = SAHL_KIND_CONE;
         push_object_space(world_from_cone, world_base);
-        out_.shape_data.push_back(static_cast<float>((apex_radius - base_radius) / base_radius));
+        push_exact((apex_radius - base_radius) / base_radius);
         bounds_ = outer_bounds(lo, hi);
     }
 
     void push_object_space(const dmat3& world_from_object, const dvec3& origin) {
         const dmat3 object_from_world = glm::inverse(world_from_object);
         for (int row = 0; row < 3; ++row) {
-            push(vec3(glm::row(object_from_world, row)));
+            push_exact(glm::row(object_from_world, row));
         }
-        push(vec3(origin));
+        push_exact(origin);
     }
 
     const Scene& scene_;

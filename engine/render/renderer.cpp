@@ -13,9 +13,11 @@
 namespace sahl {
 namespace {
 
-void copy3(float (&to)[3], const glm::dvec3& from) {
+/// A vector in two parts: floats and what they lack.
+void split3(float (&value)[3], float (&lacking)[3], const glm::dvec3& from) {
     for (int k = 0; k < 3; ++k) {
-        to[k] = static_cast<float>(from[k]);
+        value[k] = static_cast<float>(from[k]);
+        lacking[k] = static_cast<float>(from[k] - value[k]);
     }
 }
 
@@ -26,10 +28,10 @@ device::CameraConstants camera_constants(const Camera& camera, const Resolution&
     const glm::dvec3 v = glm::cross(w, u);
     const double pixel = 2 * std::tan(camera.fov_y * std::numbers::pi / 360) / resolution.height;
     device::CameraConstants out{};
-    copy3(out.eye, camera.eye);
-    copy3(out.forward, -w);
-    copy3(out.step_x, u * pixel);
-    copy3(out.step_y, v * -pixel);
+    split3(out.eye, out.eye_low, camera.eye);
+    split3(out.forward, out.forward_low, -w);
+    split3(out.step_x, out.step_x_low, u * pixel);
+    split3(out.step_y, out.step_y_low, v * -pixel);
     out.half_width = static_cast<float>(resolution.width) / 2;
     out.half_height = static_cast<float>(resolution.height) / 2;
     return out;
