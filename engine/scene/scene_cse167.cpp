@@ -42,7 +42,7 @@ private:
     // One function a command; `word_` is the command's name.
     void read_size();
     void read_camera();
-    void read_output() { reader_.skip_line(); }
+    void read_output();
     void read_depth() {
         scene_.depth = static_cast<int>(reader_.whole_number("the depth", 0, largest_depth));
     }
@@ -141,13 +141,13 @@ void Cse167Reader::read_command() {
         for (const Command& c : commands) names.push_back(c.name);
         const std::string hint = did_you_mean(word_.text, names);
         throw SceneError(reader_.place(word_),
-                         fmt::format("unknown command {}{} commands are {}", quoted(word_.text),
+                         fmt::format("unknown command {}{} commands are {}", in_quotes(word_.text),
                                      hint.empty() ? ";" : hint, join_names(names)));
     }
     if (!size_line_ && word_.text != "size") {
-        throw SceneError(
-            reader_.place(word_),
-            fmt::format("{} comes before size; the first command is size WIDTH HEIGHT", quoted(word_.text)));
+        throw SceneError(reader_.place(word_),
+                         fmt::format("{} comes before size; the first command is size WIDTH HEIGHT",
+                                     in_quotes(word_.text)));
     }
     (this->*command->read)();
 }
@@ -178,6 +178,12 @@ void Cse167Reader::read_camera() {
     check_camera(scene_.camera, look_at, up);
 }
 
+// The name, which may hold spaces, is ignored: the user names the image.
+void Cse167Reader::read_output() {
+    if (reader_.peek().kind != Token::Kind::word) reader_.fail_expected("a file name");
+    reader_.skip_line();
+}
+
 void Cse167Reader::read_vertex() {
     vertices_.push_back({static_cast<std::uint32_t>(scene_.vertices.size()), 0});
     scene_.vertices.emplace_back(reader_.vector("the vertex"));
@@ -196,7 +202,7 @@ void Cse167Reader::read_vertex_normal() {
 void Cse167Reader::read_triangle_of(const std::vector<Corner>& corners, std::string_view list, bool smooth) {
     if (corners.empty()) {
         throw SceneError(reader_.place(word_),
-                         fmt::format("{} needs three {} commands before it", quoted(word_.text), list));
+                         fmt::format("{} needs three {} commands before it", in_quotes(word_.text), list));
     }
     const glm::dmat4& m = stack_.back();
     if (smooth && !is_invertible(m)) {

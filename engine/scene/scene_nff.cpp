@@ -89,8 +89,8 @@ Scene NffReader::read() {
             need_fill(word);
             read_patch();
         } else {
-            throw SceneError(reader_.place(word),
-                             fmt::format("unknown entity {}; entities are {}", quoted(word.text), entities));
+            throw SceneError(reader_.place(word), fmt::format("unknown entity {}; entities are {}",
+                                                              in_quotes(word.text), entities));
         }
     }
     if (!view_) {
@@ -295,8 +295,8 @@ std::size_t NffReader::read_corner_count(std::string_view what, std::size_t numb
 
 void NffReader::need_fill(const Token& word) const {
     if (scene_.materials.empty()) {
-        throw SceneError(reader_.place(word),
-                         fmt::format("{} comes before any fill; put an f line before it", quoted(word.text)));
+        throw SceneError(reader_.place(word), fmt::format("{} comes before any fill; put an f line before it",
+                                                          in_quotes(word.text)));
     }
 }
 

@@ -43,7 +43,7 @@ bool begins_number(std::string_view word) {
 
 }  // namespace
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
     constexpr std::size_t longest = 40;
     std::string text = "'";
     for (const char c : word.substr(0, longest)) text += is_control(c) ? '?' : c;
@@ -126,7 +126,7 @@ void TextReader::advance() {
     next_.line = line_;
     next_.column = static_cast<int>(start - line_start_) + 1;
 
-    if (bound_line_ != 0 && next_.line != bound_line_) {
+    if (bound_line_ != 0 && (next_.line != bound_line_ || at_end())) {
         after_line_ = next_;
         next_ = {Token::Kind::line_end, {}, last_line_, last_column_};
     }
@@ -149,8 +149,8 @@ double TextReader::component(std::string_view what, std::string_view axis, Range
     double value = 0;
     const std::errc error = parse(next_.text, value);
     if (error == std::errc::result_out_of_range) {
-        throw SceneError(
-            place(), fmt::format("{}{}: {} is outside the range of numbers", what, axis, quoted(next_.text)));
+        throw SceneError(place(), fmt::format("{}{}: {} is outside the range of numbers", what, axis,
+                                              in_quotes(next_.text)));
     }
     // from_chars also reads "inf", "nan" and the like.
     if (error != std::errc() || !std::isfinite(value))
@@ -190,7 +190,7 @@ glm::vec3 TextReader::color(std::string_view what) {
 
 void TextReader::bind_to_line(const Token& word) {
     bound_line_ = word.line;
-    if (next_.line != bound_line_ || next_.kind == Token::Kind::file_end) {
+    if (next_.line != bound_line_ || at_end()) {
         after_line_ = next_;
         next_ = {Token::Kind::line_end, {}, last_line_, last_column_};
     }
@@ -198,12 +198,11 @@ void TextReader::bind_to_line(const Token& word) {
 
 void TextReader::skip_line() {
     while (next_.kind == Token::Kind::word) take();
-    end_line({});
 }
 
 void TextReader::end_line(std::string_view command) {
     if (next_.kind == Token::Kind::word) {
-        fail_expected(fmt::format("the end of the line, {} has all its values", quoted(command)));
+        fail_expected(fmt::format("the end of the line, {} has all its values", in_quotes(command)));
     }
     bound_line_ = 0;
     next_ = after_line_;
@@ -212,7 +211,7 @@ void TextReader::end_line(std::string_view command) {
 std::size_t TextReader::bytes_left() const { return text_.size() - position_ + next_.text.size(); }
 
 void TextReader::fail_expected(std::string_view what) const {
-    const std::string found = next_.kind == Token::Kind::word       ? quoted(next_.text)
+    const std::string found = next_.kind == Token::Kind::word       ? in_quotes(next_.text)
                               : next_.kind == Token::Kind::line_end ? "the end of the line"
                                                                     : "the end of the file";
     throw SceneError(place(), fmt::format("expected {}; found {}", what, found));

@@ -56,7 +56,7 @@ public:
 
     /// From now on the end of the line of `word`, just taken, is an end: what is missing is missing there.
     void bind_to_line(const Token& word);
-    /// Skips what is left of the bound line.
+    /// Skips the words that are left on the bound line.
     void skip_line();
     /// Releases the bound line. Throws if a word is left on it; `command` had all its values.
     void end_line(std::string_view command);
@@ -87,6 +87,6 @@ private:
 };
 
 /// A word for a message: in quotes, shortened, without control characters.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 }  // namespace sahl

@@ -1,0 +1,36 @@
+// Scenes out of strings and of the tests' own files.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "engine/scene/scene.h"
+#include "engine/scene/scene_cse167.h"
+#include "engine/scene/scene_nff.h"
+
+namespace sahl::tests {
+
+inline Scene parse_nff(const std::string& text) {
+    TextReader reader("scene.nff", text);
+    return read_nff(reader);
+}
+
+inline Scene parse_cse167(const std::string& text) {
+    TextReader reader("scene.test", text);
+    return read_cse167(reader);
+}
+
+/// A file of tests/data.
+inline std::filesystem::path own_scene(const std::string& name) {
+    return std::filesystem::path(std::getenv("SAHL_SOURCE_DIR")) / "tests" / "data" / name;
+}
+
+/// The least complete view: six lines.
+inline const std::string nff_view =
+    "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 64 48\n";
+
+/// The least complete CSE 167 scene: two lines.
+inline const std::string cse167_head = "size 64 48\ncamera 0 0 5 0 0 0 0 1 0 45\n";
+
+}  // namespace sahl::tests
