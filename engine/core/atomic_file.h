@@ -1,0 +1,26 @@
+// Output files that are either whole or not there.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace sahl {
+
+/// Throws Error(output) if `path` can be seen beforehand not to be writable: it is a folder, or its
+/// folder neither exists nor can be made, or may not be written to. Changes nothing.
+void check_output_file(const std::filesystem::path& path);
+
+/// True if `path` exists and is neither a regular file nor a folder, such as /dev/null or a FIFO.
+bool is_special_file(const std::filesystem::path& path);
+
+/// Makes `bytes` the content of file `path`. They are written to `.NAME.part-PID` beside it, synced
+/// and renamed, so that whoever opens `path` finds the old content or the new, and after a failure
+/// the old. Missing folders are made; a symbolic link stays and the file it leads to is replaced; a
+/// replaced file keeps its permissions; a special file is written to directly.
+/// Throws Error(output) naming `path`, the cause and the remedy; the temporary file is gone then.
+/// A process that wants the error instead of the signal when it meets its file size limit or a
+/// pipe without a reader ignores SIGXFSZ and SIGPIPE.
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+}  // namespace sahl

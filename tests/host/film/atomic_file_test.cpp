@@ -1,0 +1,217 @@
+#include "engine/core/atomic_file.h"
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "tests/host/film/temporary_folder.h"
+
+namespace fs = std::filesystem;
+
+namespace sahl {
+namespace {
+
+using tests::content_of;
+using tests::put;
+using tests::TemporaryFolder;
+
+void write(const fs::path& path, const std::string& content) {
+    write_file(path, std::as_bytes(std::span(content)));
+}
+
+/// The message of the Error(output) that `action` throws.
+template <typename Action>
+std::string output_error(Action action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::output);
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Lets no file grow beyond `bytes`, without the signal, while it lives.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &old_);
+        const rlimit limit{bytes, old_.rlim_max};
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &old_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+private:
+    rlimit old_{};
+    void (*handler_)(int) = nullptr;
+};
+
+/// The rights of a user who is not root, while it lives.
+class NoPrivileges {
+public:
+    NoPrivileges() {
+        if (user_ == 0 && ::seteuid(65534) != 0) throw std::runtime_error("seteuid failed");
+    }
+    ~NoPrivileges() {
+        if (::seteuid(user_) != 0) std::abort();
+    }
+
+private:
+    uid_t user_ = ::geteuid();
+};
+
+}  // namespace
+
+TEST_CASE("output file: written whole, replaced whole, nothing beside it", "[output]") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "picture ä 光.bin";
+    write(path, "first");
+    CHECK(content_of(path) == "first");
+    write(path, "second, longer");
+    CHECK(content_of(path) == "second, longer");
+    write(path, "");
+    CHECK(content_of(path).empty());
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("output file: a reader keeps the old content, a replaced file its permissions", "[output]") {
+    const TemporaryFolder folder;
+    write(folder / "a", "old");
+    ::chmod((folder / "a").c_str(), 0640);
+    std::ifstream reader(folder / "a");
+    write(folder / "a", "new");
+    std::string seen;
+    reader >> seen;
+    CHECK(seen == "old");
+    CHECK(content_of(folder / "a") == "new");
+    CHECK(fs::status(folder / "a").permissions() == fs::perms(0640));
+}
+
+TEST_CASE("output file: folders are made", "[output]") {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "a/b c/d.bin";
+    check_output_file(path);
+    CHECK(folder.entries() == 0);
+    write(path, "x");
+    CHECK(content_of(path) == "x");
+}
+
+TEST_CASE("output file: a name of 255 bytes", "[output]") {
+    const TemporaryFolder folder;
+    write(folder / std::string(255, 'n'), "x");
+    CHECK(content_of(folder / std::string(255, 'n')) == "x");
+    const std::string message = output_error([&] { write(folder / std::string(256, 'n'), "x"); });
+    CHECK_THAT(message, Catch::Contains("too long") && Catch::Contains("shorter name"));
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("output file: symbolic links stay and what they lead to is replaced", "[output]") {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "far");
+    put(folder / "far/target", "old");
+    fs::create_symlink("far/target", folder / "one");
+    fs::create_symlink("one", folder / "two");
+    fs::create_symlink("far/none", folder / "dangling");
+    write(folder / "two", "new");
+    CHECK(fs::is_symlink(folder / "two"));
+    CHECK(fs::is_symlink(folder / "one"));
+    CHECK_FALSE(fs::is_symlink(folder / "far/target"));
+    CHECK(content_of(folder / "far/target") == "new");
+    write(folder / "dangling", "made");
+    CHECK(fs::is_symlink(folder / "dangling"));
+    CHECK(content_of(folder / "far/none") == "made");
+
+    fs::create_symlink("loop", folder / "loop");
+    CHECK_THAT(output_error([&] { write(folder / "loop", "x"); }), Catch::Contains("symbolic links"));
+    CHECK_THAT(output_error([&] { check_output_file(folder / "loop"); }), Catch::Contains("symbolic links"));
+}
+
+TEST_CASE("output file: special files are written to, not replaced", "[output]") {
+    const TemporaryFolder folder;
+    write("/dev/null", "x");
+    CHECK(fs::is_character_file("/dev/null"));
+    check_output_file("/dev/null");
+    CHECK(is_special_file("/dev/null"));
+    CHECK_FALSE(is_special_file(folder.path()));
+    CHECK_FALSE(is_special_file(folder / "none"));
+
+    fs::create_symlink("/dev/null", folder / "link.png");
+    write(folder / "link.png", "x");
+    CHECK(fs::is_symlink(folder / "link.png"));
+
+    REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);
+    std::string received;
+    std::thread reader([&] { received = content_of(folder / "fifo"); });
+    write(folder / "fifo", std::string(200000, 'f'));
+    reader.join();
+    CHECK(received == std::string(200000, 'f'));
+    CHECK(fs::is_fifo(folder / "fifo"));
+}
+
+TEST_CASE("output file: a full disk is named and leaves the old file alone", "[output]") {
+    CHECK_THAT(output_error([] { write("/dev/full", "x"); }), Catch::Contains("'/dev/full'") &&
+                                                                  Catch::Contains("No space left") &&
+                                                                  Catch::Contains("free some space"));
+
+    const TemporaryFolder folder;
+    put(folder / "a", "old");
+    std::string message;
+    {
+        const FileSizeLimit limit(4096);
+        message = output_error([&] { write(folder / "a", std::string(100000, 'x')); });
+    }
+    CHECK_THAT(message, Catch::Contains("too large") && Catch::Contains("ulimit"));
+    CHECK(content_of(folder / "a") == "old");
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("output file: folders as targets, files as folders", "[output]") {
+    const TemporaryFolder folder;
+    put(folder / "file", "old");
+    const auto refused = [](const fs::path& path) {
+        const std::string before = output_error([&] { check_output_file(path); });
+        const std::string after = output_error([&] { write(path, "x"); });
+        CHECK_THAT(before, Catch::Contains(path.string()));
+        CHECK_THAT(after, Catch::Contains(path.string()));
+        return after;
+    };
+    CHECK_THAT(refused(folder.path()), Catch::Contains("directory") && Catch::Contains("add a file name"));
+    CHECK_THAT(refused(folder / "file/a"), Catch::Contains("choose another folder"));
+    CHECK_THAT(refused(folder / "file/b/a"), Catch::Contains("choose another folder"));
+    refused(folder / "new/");
+    refused("");
+    CHECK(content_of(folder / "file") == "old");
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("output file: a folder without the right to write", "[output]") {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "locked");
+    put(folder / "locked/a", "old");
+    fs::permissions(folder.path(), fs::perms(0755));
+    fs::permissions(folder / "locked", fs::perms(0555));
+    std::string before, file, deeper;
+    {
+        const NoPrivileges user;
+        before = output_error([&] { check_output_file(folder / "locked/a"); });
+        file = output_error([&] { write(folder / "locked/a", "x"); });
+        deeper = output_error([&] { write(folder / "locked/new/a", "x"); });
+    }
+    fs::permissions(folder / "locked", fs::perms(0755));
+    for (const std::string& message : {before, file, deeper})
+        CHECK_THAT(message, Catch::Contains("Permission denied") && Catch::Contains("that you may write to"));
+    CHECK(content_of(folder / "locked/a") == "old");
+    CHECK_FALSE(fs::exists(folder / "locked/new"));
+}
+
+}  // namespace sahl
