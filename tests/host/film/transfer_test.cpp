@@ -1,5 +1,6 @@
 #include "engine/film/transfer.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -61,6 +62,22 @@ TEST_CASE("transfer: every code comes back through the inverse curve", "[transfe
         REQUIRE(code_of<std::uint16_t>(static_cast<float>(linear_from_srgb(k / 65535.0)), Transfer::srgb) ==
                 k);
         REQUIRE(code_of<std::uint16_t>(static_cast<float>(k / 65535.0), Transfer::linear) == k);
+    }
+}
+
+TEST_CASE("transfer: 8-bit sRGB codes are those of the curve for all values", "[transfer]") {
+    for (const Rounding rounding : {Rounding::round, Rounding::floor}) {
+        const double offset = rounding == Rounding::round ? 0.5 : 0.0;
+        for (float value = 1e-6F; value < 1; value *= 1.00001F)
+            REQUIRE(code_of<std::uint8_t>(value, Transfer::srgb, rounding) ==
+                    std::floor(srgb_from_linear(value) * 255 + offset));
+        for (int k = 1; k <= 255; ++k) {  // around each step of the code
+            auto value = static_cast<float>(linear_from_srgb((k - offset) / 255));
+            for (int i = 0; i < 10; ++i) value = std::nextafter(value, 0.0F);
+            for (int i = 0; i < 20; ++i, value = std::nextafter(value, 2.0F))
+                REQUIRE(code_of<std::uint8_t>(value, Transfer::srgb, rounding) ==
+                        std::floor(std::min(srgb_from_linear(value), 1.0) * 255 + offset));
+        }
     }
 }
 
