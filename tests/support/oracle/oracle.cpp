@@ -12,8 +12,8 @@ using glm::dvec3;
 
 bool any(const glm::vec3& color) { return color.x != 0 || color.y != 0 || color.z != 0; }
 
-/// Whether a channel is non-zero in single precision: what the kernels can see of it.
-bool any_in_float(const dvec3& color) { return any(glm::vec3(color)); }
+/// Whether a channel is a normal number in single precision: what the kernels can see of it.
+bool any_in_float(const dvec3& color) { return std::max({color.x, color.y, color.z}) >= 0x1p-126; }
 
 void decide(PathRecord& record, std::uint64_t decision) {
     record.signature = (record.signature ^ (decision + 0x9e3779b97f4a7c15U)) * 0xff51afd7ed558ccdU;

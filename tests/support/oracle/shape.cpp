@@ -72,7 +72,7 @@ Shape::Shape(const Scene& scene, const Primitive& primitive)
             for (const std::uint32_t vertex : triangle.vertices) points_.emplace_back(scene.vertices[vertex]);
             if (smooth_) {
                 for (const std::uint32_t normal : triangle.normals)
-                    normals_.emplace_back(scene.normals[normal]);
+                    normals_.push_back(glm::normalize(dvec3(scene.normals[normal])));
             }
             plane_normal_ = glm::normalize(vector_area(points_));
             break;

@@ -61,7 +61,7 @@ private:
     glm::dmat4 object_from_world_;
     glm::dmat3 normal_matrix_;         ///< inverse transpose, world from object
     std::vector<glm::dvec3> points_;   ///< corners; sphere: centre; cone: base, apex
-    std::vector<glm::dvec3> normals_;  ///< of smooth triangles
+    std::vector<glm::dvec3> normals_;  ///< of smooth triangles, unit length in object space
     glm::dvec3 plane_normal_{0};       ///< object space, unit
     double radii_[2] = {0, 0};         ///< sphere: radius; cone: base, apex
     glm::dvec3 bound_center_{0};       ///< of a sphere in world space around the primitive
