@@ -113,8 +113,9 @@ private:
         if (triangle.smooth) {
             const dmat3 normal_from_object = glm::transpose(glm::inverse(linear_));
             for (const int corner : order) {
+                // Unit in object space, where they are interpolated, and of any length here.
                 const dvec3 n(glm::normalize(dvec3(scene_.normals[triangle.normals[corner]])));
-                push(vec3(glm::normalize(normal_from_object * n)));
+                push(vec3(normal_from_object * n));
             }
             lowered_.flags = SAHL_PRIMITIVE_SMOOTH;
         }

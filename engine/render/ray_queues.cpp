@@ -1,5 +1,6 @@
 #include "engine/render/ray_queues.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -10,10 +11,17 @@ namespace {
 
 constexpr std::size_t word = 4;
 
+std::uint32_t array_length(std::uint32_t rays) {
+    constexpr std::uint32_t line = 16;
+    constexpr std::uint32_t page = 1024;
+    const std::uint32_t length = std::max((rays + line - 1) / line, 1U) * line;
+    return length % page == 0 ? length - line : length;
+}
+
 }  // namespace
 
 RayQueues::RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count)
-    : capacity((ray_capacity + 15U) / 16U * 16U) {
+    : capacity(array_length(ray_capacity)) {
     const std::size_t array = capacity * word;
     const std::size_t blocks = (capacity + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
     for (int i = 0; i <= depth; ++i) {

@@ -22,7 +22,8 @@ struct Contributions {
 };
 
 struct RayQueues {
-    /// All buffers for batches of at most `ray_capacity` rays (rounded up to whole cache lines).
+    /// All buffers for batches of about `ray_capacity` rays: whole cache lines, and no multiple of
+    /// 4 KB, at which the arrays of a batch would compete for the same sets of the cache.
     RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count);
 
     std::uint32_t capacity;
