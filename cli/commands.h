@@ -1,0 +1,21 @@
+// The commands of `sahl`; each adds itself to the command line and says what it runs.
+#pragma once
+
+#include <functional>
+
+#include "cli/options.h"
+
+namespace sahl::cli {
+
+struct Command {
+    CLI::App* app = nullptr;
+    /// To be called after parsing. Failures are Error; the result is the exit status otherwise.
+    std::function<ExitCode()> run;
+};
+
+/// `common` has to outlive the command.
+Command add_render_command(CLI::App& app, CommonOptions& common);
+Command add_compare_command(CLI::App& app, CommonOptions& common);
+Command add_devices_command(CLI::App& app, CommonOptions& common);
+
+}  // namespace sahl::cli

@@ -1,0 +1,99 @@
+#include "cli/options.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sahl::cli {
+
+namespace {
+
+constexpr int most_threads = 1024;
+constexpr int most_pixels_a_side = 65536;
+constexpr int most_generations = 64;
+
+}  // namespace
+
+void refuse(std::string_view option, std::string_view text, std::string_view wanted) {
+    throw Error(ExitCode::usage, fmt::format("{} '{}': {} is wanted", option, text, wanted));
+}
+
+void add_device_options(CLI::App& app, CommonOptions& options) {
+    add_value(
+        app, "--device", "ID", [&options](const std::string& text) { options.device.selector = text; },
+        "OpenCL device: index or part of a name, see 'sahl devices' (default: PoCL's CPU)")
+        ->group("Device");
+    add_value(
+        app, "--threads", "N",
+        [&options](const std::string& text) {
+            options.device.threads = read_whole<int>("--threads", text, 1, most_threads);
+        },
+        "CPU threads of a PoCL device (default: all)")
+        ->group("Device");
+}
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+    app.add_flag("--json", options.json, "results as JSON on standard output, one object a line")
+        ->group("Messages");
+    app.add_flag("-q,--quiet", options.quiet, "errors only")->group("Messages");
+    app.add_flag("-v,--verbose", options.verbose, "more about what happens")->group("Messages");
+    add_value(
+        app, "--color", "WHEN",
+        [&options](const std::string& text) {
+            options.color = read_choice<ColorMode>(
+                "--color", text,
+                {{"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}});
+        },
+        "auto, always or never (default: auto, on a terminal without NO_COLOR)")
+        ->group("Messages");
+}
+
+double read_number(std::string_view option, std::string_view text, double least, double most) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most)) {
+        refuse(option, text, fmt::format("a number from {} to {}", least, most));
+    }
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> pieces;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        pieces.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return pieces;
+        text.remove_prefix(end + 1);
+    }
+}
+
+Resolution read_size(std::string_view option, std::string_view text) {
+    const std::vector<std::string_view> sides = split(text, 'x');
+    if (sides.size() != 2) refuse(option, text, "WIDTHxHEIGHT, such as 640x480,");
+    return {read_whole<int>(option, sides[0], 1, most_pixels_a_side),
+            read_whole<int>(option, sides[1], 1, most_pixels_a_side)};
+}
+
+Crop read_crop(std::string_view option, std::string_view text) {
+    const std::vector<std::string_view> edges = split(text, ',');
+    if (edges.size() != 4) refuse(option, text, "X0,Y0,X1,Y1 in pixels, such as 0,0,64,64,");
+    const auto edge = [&](std::size_t i) { return read_whole<int>(option, edges[i], 0, most_pixels_a_side); };
+    const Crop crop{edge(0), edge(1), edge(2), edge(3)};
+    if (crop.x0 >= crop.x1 || crop.y0 >= crop.y1) {
+        refuse(option, text, "a crop with X0 < X1 and Y0 < Y1 (X1 and Y1 are just outside)");
+    }
+    return crop;
+}
+
+std::vector<int> read_depths(std::string_view option, std::string_view text) {
+    std::vector<int> depths;
+    for (const std::string_view piece : split(text, ',')) {
+        const int depth = read_whole<int>(option, piece, 0, most_generations);
+        if (std::find(depths.begin(), depths.end(), depth) != depths.end()) {
+            refuse(option, text, "each depth once");
+        }
+        depths.push_back(depth);
+    }
+    return depths;
+}
+
+}  // namespace sahl::cli
