@@ -24,7 +24,7 @@ constexpr std::string_view entities =
     "(patch)";
 
 // Ears are cut in quadratic time.
-constexpr long long most_patch_corners = 16384;
+constexpr long long most_patch_corners = 4096;
 
 class NffReader {
 public:
@@ -98,8 +98,9 @@ Scene NffReader::read() {
                          "the file has no view; add v with from, at, up, angle, hither and resolution");
     }
     // No light has a particular strength in NFF; SPD's own pictures share 1 among them like this.
-    const float strength = 1 / std::sqrt(static_cast<float>(scene_.lights.size()));
-    for (const std::size_t i : plain_lights_) scene_.lights[i].color = glm::vec3(strength);
+    for (const std::size_t i : plain_lights_) {
+        scene_.lights[i].color = glm::vec3(1 / std::sqrt(static_cast<float>(scene_.lights.size())));
+    }
     return std::move(scene_);
 }
 

@@ -45,8 +45,9 @@ double frobenius_norm(const glm::dmat3& m) {
 }  // namespace
 
 bool is_invertible(const glm::dmat4& m) {
-    // The condition number bounds the ratio of the axes; the NaN of a singular matrix fails, too.
+    // The condition number bounds the ratio of the axes.
     const glm::dmat3 linear(m);
+    if (glm::determinant(linear) == 0) return false;
     return frobenius_norm(linear) * frobenius_norm(glm::inverse(linear)) < 1e12;
 }
 
