@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -149,18 +149,26 @@ KernelSource expand_text(const std::string& text) {
 }
 
 std::string annotate_build_log(const std::string& log, const KernelSource& source) {
-    static const std::regex place(R"(([A-Za-z0-9_./-]+):(\d{1,9}):(\d{1,9}))");
     std::istringstream lines(log);
     std::string line;
     std::string result;
     while (std::getline(lines, line)) {
         result += line + '\n';
-        // A place in a macro comes with the place where it is used.
-        for (std::sregex_iterator match(line.begin(), line.end(), place), end; match != end; ++match) {
-            const auto file = source.files.find((*match)[1]);
-            if (file == source.files.end()) continue;
-            result += excerpt(file->second, std::stoi((*match)[2]), std::stoi((*match)[3]));
+        // By position: a place in a macro comes with the place where it is used.
+        std::map<std::size_t, std::string> excerpts;
+        for (const auto& [name, text] : source.files) {
+            const std::string label = name + ":";
+            for (std::size_t at = line.find(label); at != line.npos; at = line.find(label, at + 1)) {
+                const char* const end = line.data() + line.size();
+                int number = 0;
+                int column = 0;
+                const auto first = std::from_chars(line.data() + at + label.size(), end, number);
+                if (first.ec != std::errc() || first.ptr == end || *first.ptr != ':') continue;
+                const auto second = std::from_chars(first.ptr + 1, end, column);
+                if (second.ec == std::errc()) excerpts[at] = excerpt(text, number, column);
+            }
         }
+        for (const auto& [at, lines_of_it] : excerpts) result += lines_of_it;
     }
     return result;
 }

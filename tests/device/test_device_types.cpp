@@ -2,9 +2,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/device/kernel_source.h"
@@ -35,21 +36,17 @@ const std::vector<Layout> kLayouts = {
     FIELD(BvhNode, hi_y),
     FIELD(BvhNode, hi_z),
     FIELD(BvhNode, child),
-    FIELD(BvhNode, spare),
     SIZE(TriangleBlock),
     FIELD(TriangleBlock, x),
     FIELD(TriangleBlock, id),
     FIELD(TriangleBlock, y),
-    FIELD(TriangleBlock, spare_y),
     FIELD(TriangleBlock, z),
-    FIELD(TriangleBlock, spare_z),
     SIZE(SphereBlock),
     FIELD(SphereBlock, x),
     FIELD(SphereBlock, y),
     FIELD(SphereBlock, z),
     FIELD(SphereBlock, radius),
     FIELD(SphereBlock, id),
-    FIELD(SphereBlock, spare),
     SIZE(QuadricBlock),
     FIELD(QuadricBlock, m),
     FIELD(QuadricBlock, x),
@@ -57,7 +54,6 @@ const std::vector<Layout> kLayouts = {
     FIELD(QuadricBlock, z),
     FIELD(QuadricBlock, slope),
     FIELD(QuadricBlock, id),
-    FIELD(QuadricBlock, spare),
     SIZE(PolygonBlock),
     FIELD(PolygonBlock, normal_x),
     FIELD(PolygonBlock, normal_y),
@@ -68,7 +64,6 @@ const std::vector<Layout> kLayouts = {
     FIELD(PolygonBlock, first_vertex),
     FIELD(PolygonBlock, vertex_count),
     FIELD(PolygonBlock, id),
-    FIELD(PolygonBlock, spare),
     SIZE(DevicePrimitive),
     FIELD(DevicePrimitive, kind),
     FIELD(DevicePrimitive, material),
@@ -82,30 +77,27 @@ const std::vector<Layout> kLayouts = {
     FIELD(DeviceMaterial, specular),
     FIELD(DeviceMaterial, flags),
     FIELD(DeviceMaterial, reflection),
-    FIELD(DeviceMaterial, spare0),
     FIELD(DeviceMaterial, transmission),
-    FIELD(DeviceMaterial, spare1),
     SIZE(DeviceLight),
     FIELD(DeviceLight, position),
     FIELD(DeviceLight, kind),
     FIELD(DeviceLight, color),
-    FIELD(DeviceLight, spare0),
     FIELD(DeviceLight, attenuation),
-    FIELD(DeviceLight, spare1),
     SIZE(SceneConstants),
     FIELD(SceneConstants, background),
     FIELD(SceneConstants, extent),
     FIELD(SceneConstants, light_count),
-    FIELD(SceneConstants, spare),
     SIZE(CameraConstants),
     FIELD(CameraConstants, eye),
     FIELD(CameraConstants, half_width),
     FIELD(CameraConstants, forward),
     FIELD(CameraConstants, half_height),
     FIELD(CameraConstants, step_x),
-    FIELD(CameraConstants, spare0),
     FIELD(CameraConstants, step_y),
-    FIELD(CameraConstants, spare1),
+    FIELD(CameraConstants, eye_low),
+    FIELD(CameraConstants, forward_low),
+    FIELD(CameraConstants, step_x_low),
+    FIELD(CameraConstants, step_y_low),
     SIZE(WaveConstants),
     FIELD(WaveConstants, first_low),
     FIELD(WaveConstants, first_high),
@@ -117,20 +109,30 @@ const std::vector<Layout> kLayouts = {
     FIELD(WaveConstants, crop_height),
     FIELD(WaveConstants, seed_low),
     FIELD(WaveConstants, seed_high),
-    FIELD(WaveConstants, spare),
 };
 
-/// The structs of device_types.h and their fields, by its text.
+/// The structs of device_types.h and their fields but the spare ones, by its text.
 std::map<std::string, std::set<std::string>> declared() {
-    std::string text = expand_files({"device_types.h"}).text;
-    text = std::regex_replace(text, std::regex("//[^\n]*"), "");
     std::map<std::string, std::set<std::string>> result;
-    const std::regex type(R"(typedef struct \{([^}]*)\} (\w+);)");
-    const std::regex field(R"((\w+)(\[\d+\])*\s*[,;])");
-    for (std::sregex_iterator found(text.begin(), text.end(), type), end; found != end; ++found) {
-        const std::string body = (*found)[1];
-        std::set<std::string>& fields = result[(*found)[2]];
-        for (std::sregex_iterator f(body.begin(), body.end(), field); f != end; ++f) fields.insert((*f)[1]);
+    std::set<std::string> fields;
+    bool inside = false;
+    std::istringstream lines(expand_files({"device_types.h"}).text);
+    for (std::string line; std::getline(lines, line);) {
+        line = line.substr(0, line.find("//"));
+        if (line == "typedef struct {") {
+            inside = true;
+        } else if (inside && line[0] == '}') {
+            result[line.substr(2, line.find(';') - 2)] = std::exchange(fields, {});
+            inside = false;
+        } else if (inside) {
+            // "    float x[4], y[4];": what stands before each comma, semicolon or first bracket.
+            std::istringstream declarators(line.substr(line.find_first_of(' ', line.find_first_not_of(' '))));
+            for (std::string field; std::getline(declarators, field, ',');) {
+                field = field.substr(field.find_first_not_of(' '));
+                field = field.substr(0, field.find_first_of("[; "));
+                if (field.rfind("spare", 0) != 0) fields.insert(field);
+            }
+        }
     }
     return result;
 }
