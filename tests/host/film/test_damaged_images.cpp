@@ -8,6 +8,10 @@
 
 namespace fs = std::filesystem;
 
+/// Read by the leak sanitizer: libpng leaves OpenImageIO by longjmp, over strings that hold the message
+/// "hit end of file".
+extern "C" const char* __lsan_default_suppressions() { return "leak:libOpenImageIO"; }
+
 namespace sahl {
 
 TEST_CASE("damaged image files are refused or read, never followed into a crash", "[image_io]") {
@@ -16,8 +20,9 @@ TEST_CASE("damaged image files are refused or read, never followed into a crash"
         WARN("SKIPPED: no test data");
         return;
     }
-    // OpenImageIO 2.4.7 itself crashes on the first two and takes tens of gigabytes for the third.
-    constexpr std::array left_out{"corrupt-icc-4551.jpg", "xmp-deep-nesting.png",
+    // OpenImageIO 2.4.7 itself reads out of bounds or overflows its stack in the first three (the
+    // ICC profile, IPTC and XMP metadata), and takes tens of gigabytes for the last.
+    constexpr std::array left_out{"corrupt-icc-4551.jpg", "corrupt-iptc-8011.jpg", "xmp-deep-nesting.png",
                                   "bomb-progressive-65500x65500.jpg"};
 
     int files = 0;
