@@ -10,12 +10,15 @@ namespace sahl {
 
 namespace {
 
-constexpr std::size_t max_bins = 32;
+// Most sets are small, and with many bins clearing and sweeping empty ones would be most of the time.
+constexpr std::size_t many_bins = 32;
+constexpr std::size_t few_bins = 8;
+constexpr std::size_t small_set_size = 32;
 constexpr std::size_t reduce_grain = 1u << 14;
 
 struct Bin {
     VectorBox box;
-    KindCounts counts;
+    KindCounts counts{};
 
     void add(const BuildPrimitive& primitive) {
         box.extend(load_lo(primitive), load_hi(primitive));
@@ -27,17 +30,14 @@ struct Bin {
     }
 };
 
-constexpr Bin empty_bin{{}, {}};
-
 // A set's primitives by place along each axis and by kind: kinds are the bins of a fourth axis.
+template <std::size_t BinCount>
 struct Bins {
-    std::array<std::array<Bin, max_bins>, 3> axes;
+    std::array<std::array<Bin, BinCount>, 3> axes;
     std::array<Bin, kind_count> kinds;
 };
 
-Grid make_grid(const SetSummary& summary, std::size_t size) {
-    // Most sets are small, and sweeping over more bins than primitives would be most of the time.
-    const std::size_t bins = std::clamp<std::size_t>(size, 8, max_bins);
+Grid make_grid(const SetSummary& summary, std::size_t bins) {
     Grid grid;
     grid.bins = static_cast<std::int32_t>(bins);
     for (int axis = 0; axis < 3; ++axis) {
@@ -49,12 +49,8 @@ Grid make_grid(const SetSummary& summary, std::size_t size) {
     return grid;
 }
 
-void clear(Bins& bins, const Grid& grid) {
-    for (auto& axis : bins.axes) std::fill_n(axis.begin(), grid.bins, empty_bin);
-    bins.kinds.fill(empty_bin);
-}
-
-void fill(Bins& bins, const Grid& grid, bool mixed, std::span<const BuildPrimitive> primitives) {
+template <std::size_t BinCount>
+void fill(Bins<BinCount>& bins, const Grid& grid, bool mixed, std::span<const BuildPrimitive> primitives) {
     for (const BuildPrimitive& primitive : primitives) {
         const Int4 place = grid.bins_of(primitive);
         for (int axis = 0; axis < 3; ++axis) {
@@ -64,48 +60,54 @@ void fill(Bins& bins, const Grid& grid, bool mixed, std::span<const BuildPrimiti
     }
 }
 
-void fill_parallel(Bins& bins, const Grid& grid, bool mixed, std::span<const BuildPrimitive> primitives) {
-    const Bins cleared = bins;
-    bins = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, primitives.size(), reduce_grain), cleared,
-        [&](const tbb::blocked_range<std::size_t>& range, Bins sum) {
-            fill(sum, grid, mixed, primitives.subspan(range.begin(), range.size()));
-            return sum;
+using ManyBins = Bins<many_bins>;
+
+ManyBins fill_parallel(const Grid& grid, bool mixed, std::span<const BuildPrimitive> primitives) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, primitives.size(), reduce_grain), ManyBins{},
+        [&](const tbb::blocked_range<std::size_t>& range, ManyBins bins) {
+            fill(bins, grid, mixed, primitives.subspan(range.begin(), range.size()));
+            return bins;
         },
-        [](Bins sum, const Bins& other) {
+        [](ManyBins bins, const ManyBins& other) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                for (std::size_t i = 0; i < max_bins; ++i) sum.axes[axis][i].add(other.axes[axis][i]);
+                for (std::size_t i = 0; i < many_bins; ++i) bins.axes[axis][i].add(other.axes[axis][i]);
             }
-            for (std::size_t kind = 0; kind < kind_count; ++kind) sum.kinds[kind].add(other.kinds[kind]);
-            return sum;
+            for (std::size_t kind = 0; kind < kind_count; ++kind) bins.kinds[kind].add(other.kinds[kind]);
+            return bins;
         });
 }
 
-std::size_t size_of(const KindCounts& counts) {
+// One side of a split.
+struct Side {
+    double cost = 0;
     std::size_t size = 0;
-    for (const std::uint32_t count : counts) size += count;
-    return size;
-}
+};
 
-double cost_of(const Bin& side) { return half_area(side.box.bounds()) * blocks_cost(side.counts); }
+Side side_of(const Bin& sum) {
+    Side side;
+    for (const std::uint32_t count : sum.counts) side.size += count;
+    if (side.size > 0) side.cost = half_area(sum.box.bounds()) * blocks_cost(sum.counts);
+    return side;
+}
 
 // Tries every border between `bins`; keeps the best in `best`. Of equal costs (boxes without area)
 // the most balanced, then the first.
 void sweep(std::span<const Bin> bins, const Grid& grid, int axis, std::size_t max_side, Split& best) {
-    std::array<Bin, max_bins> right;
-    right[bins.size() - 1] = bins.back();
-    for (std::size_t i = bins.size() - 1; i-- > 1;) {
-        right[i] = right[i + 1];
-        right[i].add(bins[i]);
+    std::array<Side, many_bins> right_sides;
+    Bin right;
+    for (std::size_t i = bins.size() - 1; i > 0; --i) {
+        right.add(bins[i]);
+        right_sides[i] = side_of(right);
     }
-    Bin left = empty_bin;
+    Bin left;
     for (std::size_t i = 1; i < bins.size(); ++i) {
         left.add(bins[i - 1]);
-        const std::size_t left_size = size_of(left.counts);
-        const std::size_t right_size = size_of(right[i].counts);
-        const std::size_t larger = std::max(left_size, right_size);
-        if (left_size == 0 || right_size == 0 || larger > max_side) continue;
-        const double cost = cost_of(left) + cost_of(right[i]);
+        const Side left_side = side_of(left);
+        const Side right_side = right_sides[i];
+        const std::size_t larger = std::max(left_side.size, right_side.size);
+        if (left_side.size == 0 || right_side.size == 0 || larger > max_side) continue;
+        const double cost = left_side.cost + right_side.cost;
         if (cost < best.cost || (cost == best.cost && larger < best.larger_side)) {
             best = {grid, axis, static_cast<std::int32_t>(i), cost, larger};
         }
@@ -120,6 +122,16 @@ void add(SetSummary& summary, std::span<const BuildPrimitive> primitives) {
         summary.centroids.extend(lo + hi, lo + hi);
         ++summary.counts[primitive.kind];
     }
+}
+
+template <std::size_t BinCount>
+Split sweep_all(const Bins<BinCount>& bins, const Grid& grid, bool mixed, std::size_t max_side) {
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+        sweep(bins.axes[static_cast<std::size_t>(axis)], grid, axis, max_side, best);
+    }
+    if (mixed) sweep(bins.kinds, grid, Split::by_kind, max_side, best);
+    return best;
 }
 
 }  // namespace
@@ -149,21 +161,20 @@ Split find_split(std::span<const BuildPrimitive> primitives, const SetSummary& s
     const auto absent =
         static_cast<std::size_t>(std::count(summary.counts.begin(), summary.counts.end(), 0u));
     const bool mixed = absent + 1 < kind_count;
-    const Grid grid = make_grid(summary, primitives.size());
-    Bins bins;
-    clear(bins, grid);
+    if (primitives.size() <= small_set_size) {
+        const Grid grid = make_grid(summary, few_bins);
+        Bins<few_bins> bins;
+        fill(bins, grid, mixed, primitives);
+        return sweep_all(bins, grid, mixed, max_side);
+    }
+    const Grid grid = make_grid(summary, many_bins);
+    ManyBins bins;
     if (primitives.size() < parallel_set_size) {
         fill(bins, grid, mixed, primitives);
     } else {
-        fill_parallel(bins, grid, mixed, primitives);
+        bins = fill_parallel(grid, mixed, primitives);
     }
-    Split best;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto used = std::span(bins.axes[axis]).first(static_cast<std::size_t>(grid.bins));
-        sweep(used, grid, static_cast<int>(axis), max_side, best);
-    }
-    if (mixed) sweep(bins.kinds, grid, Split::by_kind, max_side, best);
-    return best;
+    return sweep_all(bins, grid, mixed, max_side);
 }
 
 }  // namespace sahl

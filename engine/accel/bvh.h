@@ -12,7 +12,7 @@ namespace sahl {
 
 /// What the builder knows of a primitive. Bounds must contain it, rounding included.
 struct BuildPrimitive {
-    Bounds bounds;
+    Bounds bounds{};
     std::uint32_t kind = 0;  ///< SAHL_KIND_*
     std::uint32_t id = 0;    ///< index in Scene::primitives
 };

@@ -12,9 +12,9 @@ std::array<int, 8> assign_slots(std::span<const Bounds> boxes) {
 
     // cost[b][s]: how far box b lies along the direction of octant s, whose rays visit slot s
     // first.
-    std::array<std::array<float, 8>, 8> cost;
+    std::array<std::array<float, 8>, 8> cost{};
     for (std::size_t b = 0; b < boxes.size(); ++b) {
-        std::array<float, 3> offset;
+        std::array<float, 3> offset{};
         for (std::size_t k = 0; k < 3; ++k) {
             offset[k] = (boxes[b].lo[k] - all.lo[k]) + (boxes[b].hi[k] - all.hi[k]);
         }
@@ -24,7 +24,7 @@ std::array<int, 8> assign_slots(std::span<const Bounds> boxes) {
         }
     }
 
-    std::array<int, 8> slot_of;
+    std::array<int, 8> slot_of{};
     slot_of.fill(-1);
     unsigned taken = 0;
     for (std::size_t step = 0; step < boxes.size(); ++step) {

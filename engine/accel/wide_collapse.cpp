@@ -24,8 +24,8 @@ struct Subtree {
 };
 
 struct Children {
-    std::array<Subtree, width> subtrees;
-    std::array<Bounds, width> boxes;
+    std::array<Subtree, width> subtrees{};
+    std::array<Bounds, width> boxes{};
     std::size_t size = 0;
 };
 
@@ -49,7 +49,7 @@ Subtree Collapse::subtree(std::uint32_t node, std::uint32_t begin, std::uint32_t
 
 Children Collapse::open(const Subtree& parent) const {
     Children children;
-    std::array<double, width> areas;
+    std::array<double, width> areas{};
     const auto put = [&](std::size_t place, const Subtree& child) {
         children.subtrees[place] = child;
         areas[place] = child.node == binary_leaf ? -1.0 : half_area(child.bounds);
@@ -88,7 +88,7 @@ std::uint32_t Collapse::add_node(const Children& children) const {
     const std::size_t index = bvh.nodes.size();
     bvh.nodes.push_back(empty_node());
     const std::array<int, width> slot_of = assign_slots(std::span(children.boxes).first(children.size));
-    std::array<std::size_t, width> child_in;
+    std::array<std::size_t, width> child_in{};
     for (std::size_t i = 0; i < width; ++i) child_in[static_cast<std::size_t>(slot_of[i])] = i;
     for (std::size_t slot = 0; slot < width; ++slot) {
         if (child_in[slot] >= children.size) continue;
