@@ -146,6 +146,8 @@ TEST_CASE("CSE 167: flattened and empty objects", "[scene]") {
     CHECK_THROWS_AS(
         parse_cse167(cse167_head + "rotate 1 2 3 40\nscale 1 0 1\nrotate 1 2 3 40\nsphere 0 0 0 1"),
         SceneError);
+    CHECK_THROWS_WITH(parse_cse167(cse167_head + "rotate 1 2 3 40\nscale 1e3 1e-10 1e3\nsphere 0 0 0 1"),
+                      Catch::Contains("no inverse"));
     // Thin is not flat.
     CHECK(parse_cse167(cse167_head + "rotate 1 2 3 40\nscale 1 1e-6 1\nsphere 0 0 0 1").spheres.size() == 1);
     CHECK(parse_cse167(cse167_head + "scale 1e-8 1e-8 1e-8\nsphere 0 0 0 1").spheres.size() == 1);
