@@ -121,8 +121,8 @@ void NffReader::read_view(const Token& word) {
             for (std::size_t i = 0; i < view_keys.size(); ++i) {
                 if (!seen[i]) missing.push_back(view_keys[i]);
             }
-            reader_.fail_expected(fmt::format("what the view still needs ({}){}", join_names(missing),
-                                              did_you_mean(key.text, missing)));
+            reader_.fail_expected(fmt::format("what the view still needs ({})", join_names(missing)),
+                                  did_you_mean(key.text, missing));
         }
         once(seen[static_cast<std::size_t>(found - view_keys.begin())], reader_.place(key), *found);
         reader_.take();

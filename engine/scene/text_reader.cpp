@@ -210,11 +210,11 @@ void TextReader::end_line(std::string_view command) {
 
 std::size_t TextReader::bytes_left() const { return text_.size() - position_ + next_.text.size(); }
 
-void TextReader::fail_expected(std::string_view what) const {
+void TextReader::fail_expected(std::string_view what, std::string_view hint) const {
     const std::string found = next_.kind == Token::Kind::word       ? in_quotes(next_.text)
                               : next_.kind == Token::Kind::line_end ? "the end of the line"
                                                                     : "the end of the file";
-    throw SceneError(place(), fmt::format("expected {}; found {}", what, found));
+    throw SceneError(place(), fmt::format("expected {}; found {}{}", what, found, hint));
 }
 
 }  // namespace sahl

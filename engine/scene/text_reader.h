@@ -67,8 +67,8 @@ public:
     SourceLocation place(const Token& token) const { return {name_, token.line, token.column}; }
     /// The next word's place.
     SourceLocation place() const { return place(next_); }
-    /// Throws "expected `what`, found …" at the next word.
-    [[noreturn]] void fail_expected(std::string_view what) const;
+    /// Throws "expected `what`; found …`hint`" at the next word.
+    [[noreturn]] void fail_expected(std::string_view what, std::string_view hint = {}) const;
 
 private:
     void advance();

@@ -51,8 +51,7 @@ TEST_CASE("NFF errors", "[scene]") {
         {nff_view + nff_view, 8, 1, "a second view (v); the first is on line 1"},
         // The view.
         {"v\nform 0 0 5", 2, 1,
-         "expected what the view still needs (from, at, up, angle, hither, resolution); did you "
-         "mean 'from'?; found 'form'"},
+         "(from, at, up, angle, hither, resolution); found 'form'; did you mean 'from'?"},
         {"v\nfrom 0 0 5\nfrom 0 0 5", 3, 1, "a second from; the first is on line 2"},
         {view_with("angle 45\ns 0 0 0 1"), 7, 1,
          "expected what the view still needs (resolution); found 's'"},
