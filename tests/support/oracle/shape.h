@@ -58,8 +58,8 @@ private:
     bool identity_;
     bool smooth_ = false;
     bool inside_only_ = false;
-    glm::dmat4 object_from_world_;
-    glm::dmat3 normal_matrix_;         ///< inverse transpose, world from object
+    glm::dmat4 object_from_world_{1};
+    glm::dmat3 normal_matrix_{1};      ///< inverse transpose, world from object
     std::vector<glm::dvec3> points_;   ///< corners; sphere: centre; cone: base, apex
     std::vector<glm::dvec3> normals_;  ///< of smooth triangles, unit length in object space
     glm::dvec3 plane_normal_{0};       ///< object space, unit
