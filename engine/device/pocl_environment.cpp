@@ -138,10 +138,12 @@ void prepare_pocl(int threads) {
     });
 }
 
+const fs::path& pocl_folder() { return private_folder().path(); }
+
 std::size_t count_compiled_kernels() {
     std::size_t count = 0;
     std::error_code error;
-    for (fs::recursive_directory_iterator entry(private_folder().path(), error), end; !error && entry != end;
+    for (fs::recursive_directory_iterator entry(pocl_folder(), error), end; !error && entry != end;
          entry.increment(error)) {
         if (entry->path().extension() == ".so") ++count;
     }

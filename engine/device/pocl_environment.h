@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 
 namespace sahl {
 
@@ -14,8 +15,11 @@ namespace sahl {
 /// Throws Error(device) when there is no place to write and execute files, for PoCL would abort.
 void prepare_pocl(int threads);
 
-/// Kernels compiled so far into the private folder (one shared object each; those that came with a
-/// program binary count too).
+/// The private folder; after prepare_pocl().
+const std::filesystem::path& pocl_folder();
+
+/// Compiled kernels in the private folder (one shared object each; those that came from the program
+/// cache count too).
 std::size_t count_compiled_kernels();
 
 }  // namespace sahl

@@ -4,23 +4,24 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "engine/device/device_impl.h"
 #include "engine/device/kernel_source.h"
+#include "engine/device/pocl_programs.h"
 #include "engine/device/program_cache.h"
 
 namespace sahl {
 
 struct Program::Impl {
     Device& device;
-    KernelSource source;
-    std::string options;
+    std::string key;  ///< in the program cache
     cl::Program program;
     bool from_cache = false;
-    std::set<std::string> cached;    ///< kernels whose compiled code is in the cache's binary
+    std::set<std::string> cached;    ///< kernels whose compiled code is in the cache
     std::set<std::string> launched;  ///< kernels that have been compiled for this device
 
     ~Impl() { store(); }
@@ -78,18 +79,32 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
                             device.info().driver, options, annotate_build_log(log, source)));
 }
 
-std::shared_ptr<Program::Impl> build(Device& device, KernelSource source, const std::string& more) {
+std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
     std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
     if (!more.empty()) options += " " + more;
     std::shared_ptr<Program::Impl> impl(
-        new Program::Impl{device, std::move(source), std::move(options), {}, false, {}, {}});
-    if (const auto cached = load_program(cache_key(device, impl->source, impl->options))) {
-        impl->program = build_from_binary(device, cached->binary, impl->options);
+        new Program::Impl{device, cache_key(device, source, options), {}, false, {}, {}});
+    const std::optional<CachedProgram> cached = load_program(impl->key);
+    const auto from_source = [&] { impl->program = build_from_source(device, source, options); };
+    if (device.info().is_pocl) {
+        const bool unpacked = cached && unpack_compiled(impl->key, cached->binary);
+        const bool compiled = build_watched(impl->key, from_source);
+        impl->from_cache = unpacked && !compiled;
+    } else {
+        if (cached) impl->program = build_from_binary(device, cached->binary, options);
         impl->from_cache = impl->program() != nullptr;
-        if (impl->from_cache) impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
+        if (!impl->from_cache) from_source();
     }
-    if (!impl->from_cache) impl->program = build_from_source(device, impl->source, impl->options);
+    if (impl->from_cache) impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
     return impl;
+}
+
+/// The driver's binary; nothing if it has none.
+std::optional<std::string> driver_binary(const cl::Program& program) {
+    cl_int status = CL_SUCCESS;
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>(&status);
+    if (status != CL_SUCCESS || binaries.size() != 1 || binaries[0].empty()) return std::nullopt;
+    return std::string(binaries[0].begin(), binaries[0].end());
 }
 
 }  // namespace
@@ -98,17 +113,11 @@ void Program::Impl::store() noexcept try {
     if (std::includes(cached.begin(), cached.end(), launched.begin(), launched.end())) return;
     const bool is_pocl = device.info().is_pocl;
     if (from_cache && !is_pocl) return;  // such a binary holds all kernels from the start
-    device.impl().queue.finish();
-    // PoCL answers with the binary that a program came from or gave before, without what it has
-    // compiled since; a second program of the same source finds all of that in PoCL's folder.
-    // (For a binary PoCL also compiles each kernel for any local size: the first run's price.)
-    const cl::Program whole = is_pocl ? build_from_source(device, source, options) : program;
-    cl_int status = CL_SUCCESS;
-    const auto binaries = whole.getInfo<CL_PROGRAM_BINARIES>(&status);
-    if (status != CL_SUCCESS || binaries.size() != 1 || binaries[0].empty()) return;
+    device.impl().queue.finish();        // PoCL compiles until then
+    const std::optional<std::string> binary = is_pocl ? pack_compiled(key) : driver_binary(program);
+    if (!binary) return;
     cached.insert(launched.begin(), launched.end());
-    store_program(cache_key(device, source, options),
-                  {std::string(binaries[0].begin(), binaries[0].end()), {cached.begin(), cached.end()}});
+    store_program(key, {*binary, {cached.begin(), cached.end()}});
 } catch (...) {
     // What is not cached is compiled again in the next run.
 }

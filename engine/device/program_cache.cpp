@@ -33,7 +33,7 @@ struct Header {
     std::uint64_t names_bytes;
     std::uint64_t binary_bytes;
 };
-constexpr std::array<char, 8> kMagic = {'S', 'A', 'H', 'L', 'P', 'R', 'O', 'G'};
+constexpr std::array<char, 8> kMagic = {'S', 'A', 'H', 'L', 'C', 'O', 'D', 'E'};
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kChecked = offsetof(Header, key_bytes);
 

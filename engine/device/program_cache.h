@@ -8,7 +8,7 @@
 namespace sahl {
 
 struct CachedProgram {
-    std::string binary;                ///< as the driver gave it
+    std::string binary;                ///< the driver's, or what PoCL compiled, see pocl_programs.h
     std::vector<std::string> kernels;  ///< whose compiled work-group code is in it
 };
 
