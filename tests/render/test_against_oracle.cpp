@@ -131,9 +131,9 @@ struct Comparison {
 /// Away from edges every pixel agrees; at edges either side is right.
 Comparison compare(const Rendered& rendered, const oracle::Rendering& expected, double tolerance) {
     Comparison result;
+    std::size_t pixel = 0;
     for (int y = 0; y < expected.resolution.height; ++y) {
-        for (int x = 0; x < expected.resolution.width; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * expected.resolution.width + x);
+        for (int x = 0; x < expected.resolution.width; ++x, ++pixel) {
             if (expected.near_edge[pixel] != 0) continue;
             ++result.compared;
             const dvec3 difference = glm::abs(rendered.at(x, y) - expected.pixels[pixel]);
