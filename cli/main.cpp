@@ -142,12 +142,11 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
 /// Says it on standard error, and as an event for who reads those. Returns the exit status.
 int report(ExitCode code, const std::string& message, const CommonOptions& common) {
     log_error(message);
-    // Standard output itself may be what failed.
-    if (common.json && code != ExitCode::output) {
+    if (common.json) {
         try {
             print_event({{"event", "error"}, {"code", static_cast<int>(code)}, {"message", message}});
         } catch (const Error&) {
-            return static_cast<int>(code);
+            // Standard output does not work: it may be what the message is about.
         }
     }
     return static_cast<int>(code);

@@ -1,0 +1,59 @@
+#include "tests/cli/sahl_program.h"
+
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace sahl::tests {
+
+namespace {
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    if (value == nullptr) throw std::runtime_error(std::string(name) + " is not set");
+    return value;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "sahl-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
+    path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+    std::vector<std::string> command{environment("SAHL_BINARY")};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_process(command, options);
+}
+
+ProcessResult run_sahl_in(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+    ProcessOptions options;
+    options.working_directory = folder;
+    return run_sahl(arguments, options);
+}
+
+std::string scene_file(const std::string& name) {
+    return (std::filesystem::path(environment("SAHL_SOURCE_DIR")) / "tests/data" / name).string();
+}
+
+std::vector<nlohmann::json> json_lines(const std::string& text) {
+    std::vector<nlohmann::json> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(nlohmann::json::parse(line));
+    return lines;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+}  // namespace sahl::tests

@@ -1,0 +1,42 @@
+// The built `sahl`, run as a user would, in a folder of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_process.h"
+
+namespace sahl::tests {
+
+/// An empty folder that goes, with what is in it, at the end of the test.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// Runs the program that the environment variable SAHL_BINARY names.
+ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options = {});
+
+/// The same in `folder`.
+ProcessResult run_sahl_in(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+
+/// A scene file of tests/data.
+std::string scene_file(const std::string& name);
+
+/// Each line of `text` as JSON. Throws nlohmann::json::exception for a line that is none.
+std::vector<nlohmann::json> json_lines(const std::string& text);
+
+void write_file(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace sahl::tests
