@@ -46,7 +46,7 @@ static inline float3 accurate_cross3(float3 a, float3 b) {
                     difference_of_products(a.x, b.y, a.y, b.x));
 }
 
-/// log2 of a normal x > 0, relative error below 2e-7: the mantissa is brought to
+/// log2 of a normal x > 0, relative error below 3e-7: the mantissa is brought to
 /// [sqrt(1/2), sqrt(2)) and log m = 2 atanh((m - 1)/(m + 1)) summed to the ninth power.
 static inline float log2_positive(float x) {
     int bits = as_int(x);

@@ -5,7 +5,8 @@
 // contraction each edge function is right or zero, never of the wrong sign, so that tests which
 // include zero leak nothing and need no double precision. The extent test rejects collinear
 // triangles, which would be hit far along their line.
-// The interpolated distance is poor on slivers; t comes from the plane instead.
+// The interpolated distance is poor on slivers; t comes from the plane instead, kept to the range
+// of the vertices' own distances, which it leaves when the ray lies (nearly) in the plane.
 #ifndef SAHL_TRIANGLE_H
 #define SAHL_TRIANGLE_H
 
@@ -17,6 +18,7 @@ typedef struct {
     uint kx, ky, kz;     // axes
     float ox, oy, oz;    // origin along them
     float sx, sy;        // minus the shear factors
+    float dz;            // direction along kz
 } RayShear;
 
 static inline float component(float3 v, uint axis) {
@@ -32,10 +34,19 @@ static inline RayShear ray_shear(float3 origin, float3 direction) {
     shear.ox = component(origin, shear.kx);
     shear.oy = component(origin, shear.ky);
     shear.oz = component(origin, shear.kz);
-    float dz = component(direction, shear.kz);
-    shear.sx = -(component(direction, shear.kx) / dz);
-    shear.sy = -(component(direction, shear.ky) / dz);
+    shear.dz = component(direction, shear.kz);
+    shear.sx = -(component(direction, shear.kx) / shear.dz);
+    shear.sy = -(component(direction, shear.ky) / shear.dz);
     return shear;
+}
+
+/// `t` within the distances of vertices that lie between z_low and z_high along kz; NaN becomes the
+/// nearest of them.
+static inline float keep_to_vertices(float t, float z_low, float z_high, float dz) {
+    float a = z_low / dz, b = z_high / dz;
+    float nearest = SAHL_MIN(a, b), farthest = SAHL_MAX(a, b);
+    t = t > nearest ? t : nearest;
+    return t < farthest ? t : farthest;
 }
 
 /// Distance to the plane of a triangle. The normal comes from raw vertex differences, compensated,
@@ -78,7 +89,9 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
         float3 v0 = (float3)(block->x[lane], block->y[lane], block->z[lane]);
         float3 v1 = (float3)(block->x[4 + lane], block->y[4 + lane], block->z[4 + lane]);
         float3 v2 = (float3)(block->x[8 + lane], block->y[8 + lane], block->z[8 + lane]);
-        float t = triangle_distance(v0, v1, v2, ray->origin, ray->direction);
+        float z0 = ((float*)&z)[lane], z1 = ((float*)&z)[4 + lane], z2 = ((float*)&z)[8 + lane];
+        float t = keep_to_vertices(triangle_distance(v0, v1, v2, ray->origin, ray->direction),
+                                   SAHL_MIN(SAHL_MIN(z0, z1), z2), SAHL_MAX(SAHL_MAX(z0, z1), z2), shear->dz);
         float scale = 1.0f / ((float*)&determinant)[lane];
         offer_hit(state, t, ((float*)&v)[lane] * scale, ((float*)&w)[lane] * scale, id, any_hit);
     }
