@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/device/pocl_environment.h"
 #include "engine/device/program.h"
 #include "kernels/device_types.h"
 #include "tests/device/test_device_support.h"
@@ -130,6 +131,24 @@ TEST_CASE("a kernel called wrongly is an internal error that names it") {
         CHECK(contains(error_of(ExitCode::internal, [&] { add.launch(many, buffer, buffer, 1u, buffer); }),
                        "add"));
     }
+}
+
+TEST_CASE("a kernel is compiled once for all sizes of launches") {
+    Device device;
+    if (!device.info().is_pocl) return;
+    const TemporaryFolder cache;
+    const ScopedVariable variable("SAHL_CACHE_DIR", cache.path().string());
+    Program program = Program::from_text(
+        device, "__kernel void count_items(__global int* out) { out[get_global_id(0)] = -1; }");
+    Kernel kernel = program.kernel("count_items");
+    Buffer out(device, 4 * device.max_work_items(), "out");
+    const std::size_t before = count_compiled_kernels();
+    for (const std::size_t items : {std::size_t{1}, std::size_t{1000}, device.max_work_items()}) {
+        kernel.launch({.work_items = items}, out);
+    }
+    device.finish();
+    CHECK(count_compiled_kernels() == before + 1);
+    CHECK(out.map<int>(MapMode::read, device.max_work_items())[device.max_work_items() - 1] == -1);
 }
 
 TEST_CASE("a kernel keeps its program") {
