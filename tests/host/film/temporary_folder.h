@@ -1,7 +1,8 @@
-// A folder that a test may fill; gone with all in it at the end.
+// What tests of output need: a folder to fill, files, and the rights of an ordinary user.
 #pragma once
 
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,8 +10,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace sahl::tests {
+namespace sahl::tests::film {
 
+/// Gone with all in it at the end.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
@@ -38,6 +40,20 @@ private:
     std::filesystem::path path_;
 };
 
+/// The rights of a user who is not root, while it lives.
+class NoPrivileges {
+public:
+    NoPrivileges() {
+        if (user_ == 0 && ::seteuid(65534) != 0) throw std::runtime_error("seteuid failed");
+    }
+    ~NoPrivileges() {
+        if (::seteuid(user_) != 0) std::abort();
+    }
+
+private:
+    uid_t user_ = ::geteuid();
+};
+
 inline std::string content_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -47,4 +63,4 @@ inline void put(const std::filesystem::path& path, const std::string& content) {
     std::ofstream(path, std::ios::binary) << content;
 }
 
-}  // namespace sahl::tests
+}  // namespace sahl::tests::film
