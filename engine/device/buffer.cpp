@@ -9,7 +9,7 @@
 namespace sahl {
 namespace {
 
-constexpr std::size_t kSmallest = 64;
+constexpr std::size_t smallest = 64;
 
 void check_size(const Device& device, std::size_t bytes, const std::string& name) {
     const std::size_t limit = device.info().max_allocation;
@@ -55,14 +55,14 @@ Buffer::Impl::~Impl() {
 }
 
 Buffer::Buffer(Device& device, std::size_t bytes, std::string name)
-    : impl_(new Impl{device, std::move(name), bytes == 0 ? kSmallest : bytes, 0, {}, {}}) {
+    : impl_(new Impl{device, std::move(name), bytes == 0 ? smallest : bytes, 0, {}, {}}) {
     check_size(device, impl_->bytes, impl_->name);
     if (device.zero_copy()) impl_->memory = HostMemory(device.memory(), impl_->bytes, impl_->name);
     create(*impl_);
 }
 
 Buffer::Buffer(Device& device, HostMemory&& memory, std::string name)
-    : impl_(new Impl{device, std::move(name), memory.size() == 0 ? kSmallest : memory.size(), 0, {}, {}}) {
+    : impl_(new Impl{device, std::move(name), memory.size() == 0 ? smallest : memory.size(), 0, {}, {}}) {
     check_size(device, impl_->bytes, impl_->name);
     if (device.zero_copy() && memory.size() > 0) {
         impl_->memory = std::move(memory);

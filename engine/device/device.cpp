@@ -13,15 +13,15 @@ namespace sahl {
 namespace {
 
 // PoCL runs heavy work-items in groups of one best; a GPU wants one ray an item and full warps.
-constexpr std::size_t kCpuLocalSize = 1;
-constexpr std::uint32_t kCpuRaysPerItem = 64;
-constexpr std::size_t kGpuLocalSize = 64;
-constexpr std::uint32_t kGpuRaysPerItem = 1;
+constexpr std::size_t cpu_local_size = 1;
+constexpr std::uint32_t cpu_rays_per_item = 64;
+constexpr std::size_t gpu_local_size = 64;
+constexpr std::uint32_t gpu_rays_per_item = 1;
 
 // PoCL 3.1 compiles one variant of a kernel for up to this many work-items and another one beyond.
-constexpr std::size_t kPoclSmallGrid = 65534;
+constexpr std::size_t pocl_small_grid = 65534;
 
-constexpr const char* kInstall =
+constexpr const char* install_hint =
     "install PoCL, which runs kernels on the CPU (Debian: apt-get install pocl-opencl-icd), or the OpenCL "
     "driver "
     "of your GPU";
@@ -70,7 +70,7 @@ std::vector<FoundDevice> find_devices(int threads) {
     const cl_int status = cl::Platform::get(&platforms);
     if (status != CL_SUCCESS || platforms.empty()) {
         throw Error(ExitCode::device,
-                    fmt::format("no OpenCL platform found ({}): {}", cl_error_name(status), kInstall));
+                    fmt::format("no OpenCL platform found ({}): {}", cl_error_name(status), install_hint));
     }
     std::vector<FoundDevice> found;
     std::string without;
@@ -90,7 +90,7 @@ std::vector<FoundDevice> find_devices(int threads) {
     }
     if (found.empty()) {
         throw Error(ExitCode::device,
-                    fmt::format("no OpenCL device found: {}; the platforms say:{}", kInstall, without));
+                    fmt::format("no OpenCL device found: {}; the platforms say:{}", install_hint, without));
     }
     return found;
 }
@@ -126,8 +126,8 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
     impl_->platform_version = chosen.platform_version;
     impl_->device = chosen.device;
     const std::size_t largest_group = device_info<CL_DEVICE_MAX_WORK_GROUP_SIZE>(chosen.device);
-    impl_->local_size = std::min(chosen.info.is_cpu ? kCpuLocalSize : kGpuLocalSize, largest_group);
-    impl_->rays_per_item = chosen.info.is_cpu ? kCpuRaysPerItem : kGpuRaysPerItem;
+    impl_->local_size = std::min(chosen.info.is_cpu ? cpu_local_size : gpu_local_size, largest_group);
+    impl_->rays_per_item = chosen.info.is_cpu ? cpu_rays_per_item : gpu_rays_per_item;
     cl_int status = CL_SUCCESS;
     impl_->context = cl::Context(impl_->device, nullptr, nullptr, nullptr, &status);
     check_cl(status, "opening device " + chosen.info.name);
@@ -145,7 +145,7 @@ std::size_t Device::local_size() const { return impl_->local_size; }
 
 std::uint32_t Device::rays_per_item() const { return impl_->rays_per_item; }
 
-std::size_t Device::max_work_items() const { return impl_->info.is_pocl ? kPoclSmallGrid : SIZE_MAX; }
+std::size_t Device::max_work_items() const { return impl_->info.is_pocl ? pocl_small_grid : SIZE_MAX; }
 
 MemoryAccountant& Device::memory() { return impl_->memory; }
 

@@ -19,7 +19,7 @@
 namespace sahl {
 namespace {
 
-constexpr std::string_view kFolder = "kernels/";
+constexpr std::string_view folder_name = "kernels/";
 
 std::string read_kernel(const std::string& name, const std::string& included_from) {
     const std::string by = included_from.empty() ? "" : " (included from " + included_from + ")";
@@ -37,7 +37,7 @@ std::string read_kernel(const std::string& name, const std::string& included_fro
         if (kernel.name == name) return std::string(kernel.text);
     }
     throw Error(ExitCode::device,
-                fmt::format("{}{}: there is no such kernel source in this build{}", kFolder, name, by));
+                fmt::format("{}{}: there is no such kernel source in this build{}", folder_name, name, by));
 }
 
 /// The first token of a preprocessor line ("if", "include"), empty for other lines.
@@ -67,7 +67,7 @@ public:
         if (std::find(open_.begin(), open_.end(), name) != open_.end()) return;  // its guard is closed
         if (!conditional && !once_.insert(name).second) return;
         open_.push_back(name);
-        add_text(std::string(kFolder) + name, read_kernel(name, included_from), conditional);
+        add_text(std::string(folder_name) + name, read_kernel(name, included_from), conditional);
         open_.pop_back();
     }
 
@@ -106,10 +106,10 @@ public:
 
 private:
     static std::string kernel_name(const std::string& path, const std::string& here) {
-        if (path.rfind(kFolder, 0) == 0) return path.substr(kFolder.size());
+        if (path.rfind(folder_name, 0) == 0) return path.substr(folder_name.size());
         throw Error(ExitCode::device,
                     fmt::format("{}: #include \"{}\": kernel sources are included by the path \"{}NAME\"",
-                                here, path, kFolder));
+                                here, path, folder_name));
     }
 
     KernelSource& result_;
@@ -144,7 +144,7 @@ KernelSource expand_files(const std::vector<std::string>& names) {
 
 KernelSource expand_text(const std::string& text) {
     KernelSource source;
-    Expander(source).add_text(kTextName, text, false);
+    Expander(source).add_text(text_name, text, false);
     return source;
 }
 

@@ -15,7 +15,7 @@ struct KernelSource {
 };
 
 /// The name that #line gives to the text of expand_text().
-inline constexpr const char* kTextName = "text.cl";
+inline constexpr const char* text_name = "text.cl";
 
 /// The files (names below kernels/) one after the other. `#include "kernels/NAME"` puts in NAME's
 /// text: once, or, below a conditional that is not the including file's include guard, each time

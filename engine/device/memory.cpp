@@ -13,13 +13,13 @@
 namespace sahl {
 namespace {
 
-constexpr std::size_t kPage = 4096;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-constexpr std::size_t kHugeFrom = std::size_t{1} << 20;
+constexpr std::size_t page_size = 4096;
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+constexpr std::size_t huge_from = std::size_t{1} << 20;
 
 std::size_t round_up(std::size_t value, std::size_t unit) { return (value + unit - 1) / unit * unit; }
 
-std::size_t granularity(std::size_t bytes) { return bytes < kHugeFrom ? kPage : kHugePage; }
+std::size_t granularity(std::size_t bytes) { return bytes < huge_from ? page_size : huge_page; }
 
 }  // namespace
 
@@ -45,7 +45,7 @@ HostMemory::HostMemory(MemoryAccountant& accountant, std::size_t bytes, std::str
     const std::size_t unit = granularity(bytes);
     const std::size_t size = mapped_bytes(bytes);
     // One unit more than needed, so that an aligned range is inside; the ends go back.
-    const std::size_t slack = unit == kPage ? 0 : unit;
+    const std::size_t slack = unit == page_size ? 0 : unit;
     void* mapping = mmap(nullptr, size + slack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapping == MAP_FAILED) refuse(std::strerror(errno));
     auto* start = static_cast<std::byte*>(mapping);
@@ -55,7 +55,7 @@ HostMemory::HostMemory(MemoryAccountant& accountant, std::size_t bytes, std::str
     data_ = start + skip;
     size_ = bytes;
     // A hint: a system without transparent huge pages refuses it and works with small ones.
-    if (unit == kHugePage) madvise(data_, size, MADV_HUGEPAGE);
+    if (unit == huge_page) madvise(data_, size, MADV_HUGEPAGE);
     accountant_ = &accountant;
     accountant_->add(size);
 }

@@ -22,16 +22,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPrefix = "sahl-pocl-";
-constexpr const char* kLockName = "lock";
-constexpr std::uintmax_t kLeastFree = std::uintmax_t{32} << 20;  // bytes; PoCL aborts on a full disk
+constexpr const char* folder_prefix = "sahl-pocl-";
+constexpr const char* lock_name = "lock";
+constexpr std::uintmax_t least_free = std::uintmax_t{32} << 20;  // bytes; PoCL aborts on a full disk
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
     throw Error(
         ExitCode::device,
         fmt::format("{}: {}; PoCL compiles kernels into a folder below it: set TMPDIR to a folder that "
                     "can be written, that allows executable files and has {} MiB free",
-                    folder.string(), reason, kLeastFree >> 20));
+                    folder.string(), reason, least_free >> 20));
 }
 
 /// A folder of this process while the lock on its file `lock` is held. The kernel gives the lock
@@ -59,11 +59,11 @@ public:
 
 private:
     void make(const fs::path& parent) {
-        std::string name = (parent / fmt::format("{}{}-XXXXXX", kPrefix, owner_)).string();
+        std::string name = (parent / fmt::format("{}{}-XXXXXX", folder_prefix, owner_)).string();
         if (mkdtemp(name.data()) == nullptr) refuse(parent, std::strerror(errno));  // mode 0700
         path_ = name;
-        const int file = open((path_ / kLockName).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-        if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fs::exists(path_ / kLockName)) {
+        const int file = open((path_ / lock_name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+        if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fs::exists(path_ / lock_name)) {
             lock_ = file;
             return;
         }
@@ -74,7 +74,7 @@ private:
         struct statvfs space;
         if (statvfs(path_.c_str(), &space) != 0) refuse(path_.parent_path(), std::strerror(errno));
         const std::uintmax_t free = std::uintmax_t{space.f_bavail} * space.f_frsize;
-        if (free < kLeastFree) refuse(path_.parent_path(), fmt::format("only {} KiB are free", free >> 10));
+        if (free < least_free) refuse(path_.parent_path(), fmt::format("only {} KiB are free", free >> 10));
     }
 
     void check_executable() const {
@@ -102,11 +102,11 @@ void remove_stale_folders(const fs::path& parent) {
     std::error_code error;
     for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path folder = entry->path();
-        if (folder.filename().string().rfind(kPrefix, 0) != 0) continue;
+        if (folder.filename().string().rfind(folder_prefix, 0) != 0) continue;
         struct stat status;
         if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != geteuid())
             continue;
-        const int file = open((folder / kLockName).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+        const int file = open((folder / lock_name).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
         if (file < 0) continue;
         std::error_code ignored;
         if (flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, ignored);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // PoCL has one folder a program, with this file and the shared objects of the kernels below.
-constexpr const char* kProgramFile = "program.bc";
+constexpr const char* program_file = "program.bc";
 
 struct KnownFolders {
     std::mutex mutex;
@@ -35,7 +35,7 @@ std::set<fs::path> program_folders() {
     std::error_code error;
     for (fs::recursive_directory_iterator entry(pocl_folder(), error), end; !error && entry != end;
          entry.increment(error)) {
-        if (entry->path().filename() == kProgramFile) {
+        if (entry->path().filename() == program_file) {
             folders.insert(entry->path().parent_path().lexically_relative(pocl_folder()));
         }
     }
@@ -99,7 +99,7 @@ bool unpack_compiled(const std::string& key, const std::string& packed) {
     while (!rest.empty()) {
         if (!take(rest, path, contents)) return false;
         const fs::path target = pocl_folder() / path;
-        if (path.filename() == kProgramFile) known().by_key[key] = path.parent_path();
+        if (path.filename() == program_file) known().by_key[key] = path.parent_path();
         if (fs::exists(target)) continue;
         fs::create_directories(target.parent_path());
         std::ofstream file(target, std::ios::binary);

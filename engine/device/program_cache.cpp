@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExtension = ".sahl-program";
-constexpr std::size_t kMostFiles = 64;
+constexpr std::string_view file_extension = ".sahl-program";
+constexpr std::size_t most_files = 64;
 
 /// The file is a header, then the key, the kernel names (a line each) and the binary. The key is
 /// compared as a whole: equal hashes of different keys cost a rebuild, never a wrong program.
@@ -33,9 +33,9 @@ struct Header {
     std::uint64_t names_bytes;
     std::uint64_t binary_bytes;
 };
-constexpr std::array<char, 8> kMagic = {'S', 'A', 'H', 'L', 'C', 'O', 'D', 'E'};
-constexpr std::uint64_t kVersion = 1;
-constexpr std::size_t kChecked = offsetof(Header, key_bytes);
+constexpr std::array<char, 8> file_magic = {'S', 'A', 'H', 'L', 'C', 'O', 'D', 'E'};
+constexpr std::uint64_t file_version = 1;
+constexpr std::size_t checked_from = offsetof(Header, key_bytes);
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo): each step is a bijection of the state, so that no change
 /// of a single byte goes unseen.
@@ -57,7 +57,7 @@ std::optional<fs::path> cache_folder() {
 }
 
 fs::path file_of(const fs::path& folder, const std::string& key) {
-    return folder / fmt::format("{:016x}{}", fnv1a(key), kExtension);
+    return folder / fmt::format("{:016x}{}", fnv1a(key), file_extension);
 }
 
 class File {
@@ -104,8 +104,8 @@ std::optional<CachedProgram> parse(std::string_view file, std::string_view key) 
     Header header;
     if (file.size() < sizeof(header)) return std::nullopt;
     std::memcpy(&header, file.data(), sizeof(header));
-    if (header.magic != kMagic || header.version != kVersion) return std::nullopt;
-    if (header.checksum != fnv1a(file.substr(kChecked))) return std::nullopt;
+    if (header.magic != file_magic || header.version != file_version) return std::nullopt;
+    if (header.checksum != fnv1a(file.substr(checked_from))) return std::nullopt;
     std::string_view rest = file.substr(sizeof(header));
     const auto take = [&](std::uint64_t bytes) -> std::optional<std::string_view> {
         if (bytes > rest.size()) return std::nullopt;
@@ -126,11 +126,11 @@ std::optional<CachedProgram> parse(std::string_view file, std::string_view key) 
 std::string serialize(const std::string& key, const CachedProgram& program) {
     std::string names;
     for (const std::string& name : program.kernels) names += name + '\n';
-    Header header{kMagic, kVersion, 0, key.size(), names.size(), program.binary.size()};
+    Header header{file_magic, file_version, 0, key.size(), names.size(), program.binary.size()};
     std::string file(sizeof(header), '\0');
     std::memcpy(file.data(), &header, sizeof(header));
     file += key + names + program.binary;
-    header.checksum = fnv1a(std::string_view(file).substr(kChecked));
+    header.checksum = fnv1a(std::string_view(file).substr(checked_from));
     std::memcpy(file.data(), &header, sizeof(header));
     return file;
 }
@@ -140,13 +140,13 @@ void prune(const fs::path& folder) {
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (entry->path().filename().string().find(kExtension) == std::string::npos) continue;
+        if (entry->path().filename().string().find(file_extension) == std::string::npos) continue;
         std::error_code ignored;
         files.emplace_back(entry->last_write_time(ignored), entry->path());
     }
-    if (files.size() <= kMostFiles) return;
+    if (files.size() <= most_files) return;
     std::sort(files.begin(), files.end());
-    files.resize(files.size() - kMostFiles);
+    files.resize(files.size() - most_files);
     for (const auto& [time, path] : files) fs::remove(path, error);
 }
 

@@ -37,9 +37,6 @@ device::CameraConstants camera_constants(const Camera& camera, const Resolution&
     return out;
 }
 
-/// Work-items of a launch stay below this number (POCL compiles larger grids apart).
-constexpr std::uint64_t max_work_items = 65535;
-
 }  // namespace
 
 struct Renderer::Impl {
@@ -73,11 +70,15 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film, co
         throw Error(ExitCode::usage, "the crop must lie inside the image and the film must have the crop's size");
     }
     const std::uint64_t samples = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(settings.spp);
-    const std::uint64_t most = max_work_items * impl_->device.rays_per_item();
-    const auto capacity = static_cast<std::uint32_t>(std::min({std::uint64_t{settings.ray_budget}, samples, most}));
+    const std::uint64_t launchable = std::uint64_t{impl_->device.max_work_items()} * impl_->device.rays_per_item();
+    const auto capacity =
+        static_cast<std::uint32_t>(std::min({std::uint64_t{settings.ray_budget}, samples, launchable}));
     RayQueues queues(impl_->device, capacity, settings.depth, impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    return trace_waves(wavefront, camera_constants(impl_->camera, resolution), settings, crop, film, progress);
+    RenderStatistics statistics =
+        trace_waves(wavefront, camera_constants(impl_->camera, resolution), settings, crop, film, progress);
+    impl_->program.store_binary();  // now that each kernel has been compiled
+    return statistics;
 }
 
 }  // namespace sahl

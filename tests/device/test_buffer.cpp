@@ -11,7 +11,7 @@
 namespace sahl::tests {
 namespace {
 
-constexpr std::size_t kMiB = std::size_t{1} << 20;
+constexpr std::size_t mebibyte = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -21,10 +21,10 @@ TEST_CASE("host memory is zeroed, aligned, and accounted for as it is mapped") {
         {1, 4096, 4096},
         {4096, 4096, 4096},
         {4097, 4096, 8192},
-        {kMiB - 1, 4096, kMiB},
-        {kMiB, 2 * kMiB, 2 * kMiB},
-        {2 * kMiB, 2 * kMiB, 2 * kMiB},
-        {5 * kMiB + 3, 2 * kMiB, 6 * kMiB},
+        {mebibyte - 1, 4096, mebibyte},
+        {mebibyte, 2 * mebibyte, 2 * mebibyte},
+        {2 * mebibyte, 2 * mebibyte, 2 * mebibyte},
+        {5 * mebibyte + 3, 2 * mebibyte, 6 * mebibyte},
     }));
     {
         const HostMemory memory(accountant, bytes, "test");
@@ -178,11 +178,11 @@ TEST_CASE("mappings that nobody waits for, and buffers that end with work queued
             for (uint i = 0; i < n; ++i) out[i] = i;
         })");
     Kernel fill = program.kernel("fill");
-    constexpr std::uint32_t kCount = 1u << 20;
+    constexpr std::uint32_t element_count = 1u << 20;
     for (int round = 0; round < 20; ++round) {
-        Buffer buffer(device, kCount * 4, "short-lived");
-        fill.launch({.work_items = 1}, buffer, kCount);
-        auto unused = buffer.enqueue_map<std::uint32_t>(MapMode::read, kCount);
+        Buffer buffer(device, element_count * 4, "short-lived");
+        fill.launch({.work_items = 1}, buffer, element_count);
+        auto unused = buffer.enqueue_map<std::uint32_t>(MapMode::read, element_count);
     }
     CHECK(device.memory().current() == 0);
 }

@@ -26,7 +26,7 @@ DeviceInfo device_named(int index, const std::string& name, bool is_cpu, bool is
     return info;
 }
 
-const std::vector<DeviceInfo> kMachine = {
+const std::vector<DeviceInfo> machine = {
     device_named(0, "Acme RTX 90", false, false),
     device_named(1, "Acme RTX 90 Super", false, false),
     device_named(2, "Acme Xeon", true, false),
@@ -48,23 +48,23 @@ std::size_t entries(const std::filesystem::path& folder) {
 }  // namespace
 
 TEST_CASE("device choice: the default is PoCL's CPU, else a CPU, else the first") {
-    CHECK(choose_device(kMachine, "") == 3);
-    CHECK(choose_device(std::span(kMachine).first(3), "") == 2);
-    CHECK(choose_device(std::span(kMachine).first(2), "") == 0);
+    CHECK(choose_device(machine, "") == 3);
+    CHECK(choose_device(std::span(machine).first(3), "") == 2);
+    CHECK(choose_device(std::span(machine).first(2), "") == 0);
 }
 
 TEST_CASE("device choice: by index and by name") {
-    CHECK(choose_device(kMachine, "0") == 0);
-    CHECK(choose_device(kMachine, "02") == 2);
-    CHECK(choose_device(kMachine, "xeon") == 2);
-    CHECK(choose_device(kMachine, "HASWELL") == 3);
-    CHECK(choose_device(kMachine, "portable computing") == 3);
-    CHECK(choose_device(kMachine, "rtx 90 s") == 1);
-    CHECK(choose_device(kMachine, "acme rtx 90") == 0);  // a whole name, though also a part of another
+    CHECK(choose_device(machine, "0") == 0);
+    CHECK(choose_device(machine, "02") == 2);
+    CHECK(choose_device(machine, "xeon") == 2);
+    CHECK(choose_device(machine, "HASWELL") == 3);
+    CHECK(choose_device(machine, "portable computing") == 3);
+    CHECK(choose_device(machine, "rtx 90 s") == 1);
+    CHECK(choose_device(machine, "acme rtx 90") == 0);  // a whole name, though also a part of another
 }
 
 TEST_CASE("device choice: several matches are listed, and only they") {
-    const std::string message = error_of(ExitCode::device, [] { choose_device(kMachine, "rtx"); });
+    const std::string message = error_of(ExitCode::device, [] { choose_device(machine, "rtx"); });
     CHECK(contains(message, "--device rtx"));
     CHECK(contains(message, "0: Acme RTX 90 (Acme Compute)"));
     CHECK(contains(message, "1: Acme RTX 90 Super (Acme Compute)"));
@@ -73,9 +73,9 @@ TEST_CASE("device choice: several matches are listed, and only they") {
 
 TEST_CASE("device choice: no match lists all devices") {
     const std::string selector = GENERATE("4", "99999999999999999999999", "radeon", "-1");
-    const std::string message = error_of(ExitCode::device, [&] { choose_device(kMachine, selector); });
+    const std::string message = error_of(ExitCode::device, [&] { choose_device(machine, selector); });
     CHECK(contains(message, "--device " + selector));
-    for (const DeviceInfo& device : kMachine) CHECK(contains(message, device.name));
+    for (const DeviceInfo& device : machine) CHECK(contains(message, device.name));
 }
 
 TEST_CASE("a device says what it is") {

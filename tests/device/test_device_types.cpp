@@ -27,7 +27,7 @@ struct Layout {
 #define FIELD(type, field) \
     Layout { #type, #field, offsetof(device::type, field) }
 
-const std::vector<Layout> kLayouts = {
+const std::vector<Layout> layouts = {
     SIZE(BvhNode),
     FIELD(BvhNode, lo_x),
     FIELD(BvhNode, lo_y),
@@ -141,7 +141,7 @@ std::map<std::string, std::set<std::string>> declared() {
 
 TEST_CASE("the layouts below are all of device_types.h") {
     std::map<std::string, std::set<std::string>> listed;
-    for (const Layout& layout : kLayouts) {
+    for (const Layout& layout : layouts) {
         std::set<std::string>& fields = listed[layout.type];
         if (!layout.field.empty()) fields.insert(layout.field);
     }
@@ -152,8 +152,8 @@ TEST_CASE("the layouts below are all of device_types.h") {
 TEST_CASE("host and device agree about every struct they share") {
     std::string text = "#include \"kernels/device_types.h\"\n__kernel void lay_out(__global uint* out) {\n";
     std::string type;
-    for (std::size_t i = 0; i < kLayouts.size(); ++i) {
-        const Layout& layout = kLayouts[i];
+    for (std::size_t i = 0; i < layouts.size(); ++i) {
+        const Layout& layout = layouts[i];
         if (layout.type != type) {
             type = layout.type;
             text += type + " a_" + type + ";\n";
@@ -168,12 +168,12 @@ TEST_CASE("host and device agree about every struct they share") {
     }
     Device device;
     Program program = Program::from_text(device, text + "}\n");
-    Buffer out(device, 4 * kLayouts.size(), "layouts");
+    Buffer out(device, 4 * layouts.size(), "layouts");
     program.kernel("lay_out").launch({.work_items = 1}, out);
-    const auto bytes = out.map<std::uint32_t>(MapMode::read, kLayouts.size());
-    for (std::size_t i = 0; i < kLayouts.size(); ++i) {
-        CAPTURE(kLayouts[i].type, kLayouts[i].field);
-        CHECK(bytes[i] == kLayouts[i].bytes);
+    const auto bytes = out.map<std::uint32_t>(MapMode::read, layouts.size());
+    for (std::size_t i = 0; i < layouts.size(); ++i) {
+        CAPTURE(layouts[i].type, layouts[i].field);
+        CHECK(bytes[i] == layouts[i].bytes);
     }
 }
 

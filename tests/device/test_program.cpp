@@ -10,7 +10,7 @@
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kArithmetic = R"(
+constexpr const char* arithmetic = R"(
 #include "kernels/device_types.h"
 
 __kernel void add(__global const float* a, __global const float* b, uint count, __global float* sum) {
@@ -31,30 +31,30 @@ __kernel void unpack(CameraConstants camera, WaveConstants wave, __global float*
 
 TEST_CASE("a program from text computes") {
     Device device;
-    Program program = Program::from_text(device, kArithmetic);
-    constexpr std::uint32_t kCount = 1000;
-    Buffer a(device, kCount * 4, "a");
-    Buffer b(device, kCount * 4, "b");
-    Buffer sum(device, (kCount + 1) * 4, "sum");
+    Program program = Program::from_text(device, arithmetic);
+    constexpr std::uint32_t element_count = 1000;
+    Buffer a(device, element_count * 4, "a");
+    Buffer b(device, element_count * 4, "b");
+    Buffer sum(device, (element_count + 1) * 4, "sum");
     {
-        const auto values_a = a.map<float>(MapMode::write, kCount);
-        const auto values_b = b.map<float>(MapMode::write, kCount);
-        for (std::uint32_t i = 0; i < kCount; ++i) {
+        const auto values_a = a.map<float>(MapMode::write, element_count);
+        const auto values_b = b.map<float>(MapMode::write, element_count);
+        for (std::uint32_t i = 0; i < element_count; ++i) {
             values_a[i] = static_cast<float>(i);
             values_b[i] = 0.25f;
         }
-        sum.map<float>(MapMode::write, kCount + 1)[kCount] = -7;
+        sum.map<float>(MapMode::write, element_count + 1)[element_count] = -7;
     }
-    const std::size_t items = (kCount + device.rays_per_item() - 1) / device.rays_per_item();
-    program.kernel("add").launch({.work_items = items}, a, b, kCount, sum);
-    const auto result = sum.map<float>(MapMode::read, kCount + 1);
-    for (std::uint32_t i = 0; i < kCount; ++i) REQUIRE(result[i] == static_cast<float>(i) + 0.25f);
-    CHECK(result[kCount] == -7);
+    const std::size_t items = (element_count + device.rays_per_item() - 1) / device.rays_per_item();
+    program.kernel("add").launch({.work_items = items}, a, b, element_count, sum);
+    const auto result = sum.map<float>(MapMode::read, element_count + 1);
+    for (std::uint32_t i = 0; i < element_count; ++i) REQUIRE(result[i] == static_cast<float>(i) + 0.25f);
+    CHECK(result[element_count] == -7);
 }
 
 TEST_CASE("structs arrive by value") {
     Device device;
-    Program program = Program::from_text(device, kArithmetic);
+    Program program = Program::from_text(device, arithmetic);
     device::CameraConstants camera{};
     camera.eye[2] = 3;
     camera.half_height = 384.5f;
@@ -83,7 +83,7 @@ TEST_CASE("options reach the compiler") {
 
 TEST_CASE("launches are recorded while that is enabled") {
     Device device;
-    Program program = Program::from_text(device, kArithmetic);
+    Program program = Program::from_text(device, arithmetic);
     Kernel add = program.kernel("add");
     Buffer values(device, 6400, "values");
     add.launch({.work_items = 1, .generation = 9, .items = 9}, values, values, 1u, values);
@@ -116,7 +116,7 @@ TEST_CASE("launches are recorded while that is enabled") {
 
 TEST_CASE("a kernel called wrongly is an internal error that names it") {
     Device device;
-    Program program = Program::from_text(device, kArithmetic);
+    Program program = Program::from_text(device, arithmetic);
     Buffer buffer(device, 64, "buffer");
     CHECK(contains(error_of(ExitCode::internal, [&] { program.kernel("subtract"); }), "subtract"));
     Kernel add = program.kernel("add");
@@ -153,7 +153,7 @@ TEST_CASE("a kernel is compiled once for all sizes of launches") {
 
 TEST_CASE("a kernel keeps its program") {
     Device device;
-    Kernel add = [&] { return Program::from_text(device, kArithmetic).kernel("add"); }();
+    Kernel add = [&] { return Program::from_text(device, arithmetic).kernel("add"); }();
     Buffer values(device, 4, "values");
     values.map<float>(MapMode::write, 1)[0] = 2;
     add.launch({.work_items = 1}, values, values, 1u, values);

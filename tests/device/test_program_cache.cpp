@@ -15,15 +15,15 @@
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kText = R"(
+constexpr const char* source_text = R"(
 __kernel void twice(__global float* values) { values[get_global_id(0)] *= 2; }
 __kernel void add_three(__global float* values) { values[get_global_id(0)] += 3; }
 __kernel void negate(__global float* values) { values[get_global_id(0)] *= -1; }
 )";
 
-/// Runs `kernels` of kText on 1.0 and returns the result; says whether the cache served.
+/// Runs `kernels` of source_text on 1.0 and returns the result; says whether the cache served.
 float run(Device& device, const std::vector<std::string>& kernels, bool& from_cache) {
-    Program program = Program::from_text(device, kText);
+    Program program = Program::from_text(device, source_text);
     from_cache = program.from_cache();
     Buffer values(device, 4 * device.local_size(), "values");
     values.map<float>(MapMode::write, 1)[0] = 1;
@@ -79,7 +79,7 @@ TEST_CASE("probe: program cache", "[.probe]") {
     float result = 0;
     bool from_cache = false;
     {
-        Program program = Program::from_text(device, kText);
+        Program program = Program::from_text(device, source_text);
         from_cache = program.from_cache();
         loaded = count_compiled_kernels();
         Buffer values(device, 4 * device.local_size(), "values");
