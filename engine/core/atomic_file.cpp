@@ -153,7 +153,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) try {
     Descriptor file(::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.get() < 0) fail(path, errno);
     write_all(file.get(), bytes, path);
-    struct stat old;
+    struct stat old {};
     if (::stat(target.c_str(), &old) == 0) ::fchmod(file.get(), old.st_mode & 0777);
     if (::fsync(file.get()) != 0) fail(path, errno);
     close_checked(file, path);

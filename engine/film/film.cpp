@@ -75,7 +75,7 @@ void Film::add(std::span<const std::uint32_t> pixels, const float* red, const fl
                                             " of a film of " + std::to_string(sums_.size() / 3) +
                                             "; please report this");
 
-    std::array<std::array<std::int64_t, block>, 3> fixed;
+    std::array<std::array<std::int64_t, block>, 3> fixed{};
     const std::array<const float*, 3> channels{red, green, blue};
     for (std::size_t begin = 0; begin < pixels.size(); begin += block) {
         const std::size_t count = std::min(block, pixels.size() - begin);
