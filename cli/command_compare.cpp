@@ -19,7 +19,8 @@ struct PixelLimit {
     bool percent = false;
 
     std::uint64_t of(std::uint64_t pixels) const {
-        return static_cast<std::uint64_t>(percent ? std::floor(value * static_cast<double>(pixels) / 100) : value);
+        return static_cast<std::uint64_t>(percent ? std::floor(value * static_cast<double>(pixels) / 100)
+                                                  : value);
     }
 };
 
@@ -50,14 +51,15 @@ PixelLimit read_limit(std::string_view option, std::string_view text) {
 
 std::string report(const Comparison& result, const CompareOptions& options, std::uint64_t allowed) {
     const double share = 100 * static_cast<double>(result.pixels_over) / static_cast<double>(result.pixels);
-    return fmt::format("largest difference  {:.6g} ({:.2f} of 255) at pixel {},{}\n"
-                       "mean difference     {:.6g}\n"
-                       "MSE                 {:.6g}\n"
-                       "PSNR                {:.2f} dB\n"
-                       "pixels over {:.6g}: {} of {} ({:.4f} %), allowed {}\n",
-                       result.max_difference, 255 * result.max_difference, result.worst_x, result.worst_y,
-                       result.mean_difference, result.mse, result.psnr, options.threshold, result.pixels_over,
-                       result.pixels, share, allowed);
+    return fmt::format(
+        "largest difference  {:.6g} ({:.2f} of 255) at pixel {},{}\n"
+        "mean difference     {:.6g}\n"
+        "MSE                 {:.6g}\n"
+        "PSNR                {:.2f} dB\n"
+        "pixels over {:.6g}: {} of {} ({:.4f} %), allowed {}\n",
+        result.max_difference, 255 * result.max_difference, result.worst_x, result.worst_y,
+        result.mean_difference, result.mse, result.psnr, options.threshold, result.pixels_over, result.pixels,
+        share, allowed);
 }
 
 /// Infinities become null.
@@ -87,8 +89,7 @@ ExitCode compare_files(const CompareOptions& options, const CommonOptions& commo
     const Image b = read_image(options.b);
     std::optional<Image> mask;
     if (options.mask) mask = read_image(*options.mask);
-    const Comparison result =
-        compare(a, b, static_cast<float>(options.threshold), mask ? &*mask : nullptr);
+    const Comparison result = compare(a, b, static_cast<float>(options.threshold), mask ? &*mask : nullptr);
     if (options.difference) write_image(*options.difference, difference_image(a, b), encoding);
 
     const std::uint64_t allowed = options.limit.of(result.pixels);
@@ -107,23 +108,28 @@ Command add_compare_command(CLI::App& app, CommonOptions& common) {
     CLI::App* command = app.add_subcommand("compare", "says how much two images differ");
     command->add_option("A", options->a, "image")->required()->type_name("FILE");
     command->add_option("B", options->b, "image of the same size")->required()->type_name("FILE");
-    add_value(*command, "--threshold", "VALUE",
-              [options](const std::string& text) { options->threshold = read_threshold("--threshold", text); },
-              "a pixel counts where a channel differs by more (default: 0; 8-bit steps: 2/255)");
-    add_value(*command, "--max-pixels", "N|P%",
-              [options](const std::string& text) { options->limit = read_limit("--max-pixels", text); },
-              "so many pixels may count (default: 0)");
-    add_value(*command, "--mask", "FILE", [options](const std::string& text) { options->mask = text; },
-              "compares only where this image is white");
-    add_value(*command, "--diff", "FILE", [options](const std::string& text) { options->difference = text; },
-              "writes the image of the differences");
+    add_value(
+        *command, "--threshold", "VALUE",
+        [options](const std::string& text) { options->threshold = read_threshold("--threshold", text); },
+        "a pixel counts where a channel differs by more (default: 0; 8-bit steps: 2/255)");
+    add_value(
+        *command, "--max-pixels", "N|P%",
+        [options](const std::string& text) { options->limit = read_limit("--max-pixels", text); },
+        "so many pixels may count (default: 0)");
+    add_value(
+        *command, "--mask", "FILE", [options](const std::string& text) { options->mask = text; },
+        "compares only where this image is white");
+    add_value(
+        *command, "--diff", "FILE", [options](const std::string& text) { options->difference = text; },
+        "writes the image of the differences");
     add_common_options(*command, common);
-    command->footer("Exit status 1: more pixels than allowed, or different sizes.\n"
-                    "Values are compared as stored: 8-bit v is v/255.\n"
-                    "Examples:\n"
-                    "  sahl compare image.png reference.png\n"
-                    "  sahl compare image.png reference.png --threshold 2/255 --max-pixels 0.1%\n"
-                    "  sahl compare a.exr b.exr --mask valid.png --diff difference.exr");
+    command->footer(
+        "Exit status 1: more pixels than allowed, or different sizes.\n"
+        "Values are compared as stored: 8-bit v is v/255.\n"
+        "Examples:\n"
+        "  sahl compare image.png reference.png\n"
+        "  sahl compare image.png reference.png --threshold 2/255 --max-pixels 0.1%\n"
+        "  sahl compare a.exr b.exr --mask valid.png --diff difference.exr");
     return {command, [options, &common] { return compare_files(*options, common); }};
 }
 

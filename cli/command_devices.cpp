@@ -12,11 +12,12 @@ namespace {
 std::string mebibytes(std::size_t bytes) { return fmt::format("{} MiB", bytes >> 20U); }
 
 std::string device_text(const DeviceInfo& device, bool chosen) {
-    return fmt::format("{} {:>2}  {}\n"
-                       "      platform {}, driver {}\n"
-                       "      {} compute units, {} memory, largest buffer {}\n",
-                       chosen ? '*' : ' ', device.index, device.name, device.platform, device.driver,
-                       device.compute_units, mebibytes(device.global_memory), mebibytes(device.max_allocation));
+    return fmt::format(
+        "{} {:>2}  {}\n"
+        "      platform {}, driver {}\n"
+        "      {} compute units, {} memory, largest buffer {}\n",
+        chosen ? '*' : ' ', device.index, device.name, device.platform, device.driver, device.compute_units,
+        mebibytes(device.global_memory), mebibytes(device.max_allocation));
 }
 
 nlohmann::ordered_json device_event(const DeviceInfo& device, bool chosen) {
@@ -51,11 +52,12 @@ ExitCode list(const CommonOptions& common) {
 
 Command add_devices_command(CLI::App& app, CommonOptions& common) {
     CLI::App* command = app.add_subcommand("devices", "lists the OpenCL devices");
-    command->footer("'*' marks the device that is used; --device takes an index or a part of a name.\n"
-                    "Examples:\n"
-                    "  sahl devices\n"
-                    "  sahl devices --json\n"
-                    "  sahl devices --device 1");
+    command->footer(
+        "'*' marks the device that is used; --device takes an index or a part of a name.\n"
+        "Examples:\n"
+        "  sahl devices\n"
+        "  sahl devices --json\n"
+        "  sahl devices --device 1");
     add_device_options(*command, common);
     add_common_options(*command, common);
     return {command, [&common] { return list(common); }};

@@ -43,17 +43,18 @@ struct Rendered {
 };
 
 GenerationCounts total(const RenderStatistics& statistics) {
-    return std::accumulate(statistics.generations.begin(), statistics.generations.end(), GenerationCounts{},
-                           [](const GenerationCounts& sum, const GenerationCounts& generation) {
-                               return GenerationCounts{sum.rays + generation.rays,
-                                                       sum.shadow_rays + generation.shadow_rays};
-                           });
+    return std::accumulate(
+        statistics.generations.begin(), statistics.generations.end(), GenerationCounts{},
+        [](const GenerationCounts& sum, const GenerationCounts& generation) {
+            return GenerationCounts{sum.rays + generation.rays, sum.shadow_rays + generation.shadow_rays};
+        });
 }
 
 void check_crop(const Crop& crop, const Resolution& resolution) {
     if (crop.x1 <= resolution.width && crop.y1 <= resolution.height) return;
-    throw Error(ExitCode::usage, fmt::format("--crop {},{},{},{} reaches outside the image, which is {}x{}", crop.x0,
-                                             crop.y0, crop.x1, crop.y1, resolution.width, resolution.height));
+    throw Error(ExitCode::usage,
+                fmt::format("--crop {},{},{},{} reaches outside the image, which is {}x{}", crop.x0, crop.y0,
+                            crop.x1, crop.y1, resolution.width, resolution.height));
 }
 
 ProgressStyle progress_style(const CommonOptions& common) {
@@ -110,12 +111,12 @@ void say_image(const Rendered& image) {
 
 void warn_of_lost_light(const Rendered& image) {
     if (image.non_finite > 0) {
-        log_warning(fmt::format("{}: {} contributions were no finite numbers and count as black", image.path.string(),
-                                image.non_finite));
+        log_warning(fmt::format("{}: {} contributions were no finite numbers and count as black",
+                                image.path.string(), image.non_finite));
     }
     if (image.clamped > 0) {
-        log_warning(fmt::format("{}: {} contributions were brighter than {} and were cut to that", image.path.string(),
-                                image.clamped, Film::max_contribution));
+        log_warning(fmt::format("{}: {} contributions were brighter than {} and were cut to that",
+                                image.path.string(), image.clamped, Film::max_contribution));
     }
 }
 
@@ -134,15 +135,17 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendered& image,
 }
 
 Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& settings,
-                      const std::filesystem::path& path, const RenderOptions& options, const CommonOptions& common) {
+                      const std::filesystem::path& path, const RenderOptions& options,
+                      const CommonOptions& common) {
     Rendered result{path, settings, settings.resolution, {}, 0, 0};
     if (const auto& crop = settings.crop) result.size = {crop->x1 - crop->x0, crop->y1 - crop->y0};
     Film film(device.memory(), result.size.width, result.size.height);
     {
-        Progress progress(std::cerr, progress_style(common), fmt::format("depth {}", settings.depth), "samples");
-        result.statistics = renderer.render(settings, film, [&progress](std::uint64_t done, std::uint64_t all) {
-            progress.update(done, all);
-        });
+        Progress progress(std::cerr, progress_style(common), fmt::format("depth {}", settings.depth),
+                          "samples");
+        result.statistics = renderer.render(
+            settings, film,
+            [&progress](std::uint64_t done, std::uint64_t all) { progress.update(done, all); });
     }
     result.non_finite = film.non_finite_count();
     result.clamped = film.clamped_count();
@@ -169,8 +172,8 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
                           device.info().driver));
     Renderer renderer(device, scene);
     const BvhStatistics& bvh = renderer.bvh_statistics();
-    log_debug(fmt::format("{} primitives; tree of {} nodes, {} levels, built in {:.2f} s", bvh.primitives, bvh.nodes,
-                          bvh.depth, bvh.build_seconds));
+    log_debug(fmt::format("{} primitives; tree of {} nodes, {} levels, built in {:.2f} s", bvh.primitives,
+                          bvh.nodes, bvh.depth, bvh.build_seconds));
     if (common.json) print_start(options, settings, depths, device.info(), bvh);
 
     for (std::size_t i = 0; i < depths.size(); ++i) {
@@ -184,52 +187,64 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
 }
 
 void add_image_options(CLI::App& command, RenderOptions& options) {
-    add_value(command, "--size", "WxH",
-              [&options](const std::string& text) { options.size = read_size("--size", text); },
-              "pixels (default: the scene's)");
-    add_value(command, "--depth", "N[,N...]",
-              [&options](const std::string& text) { options.depths = read_depths("--depth", text); },
-              "generations of rays after the camera's, 0 to 64 (default: the scene's)");
-    add_value(command, "--spp", "N",
-              [&options](const std::string& text) { options.spp = read_whole<int>("--spp", text, 1, most_samples); },
-              "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
-    add_value(command, "--seed", "N",
-              [&options](const std::string& text) {
-                  options.seed = read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
-              },
-              "of the random numbers (default: 0)");
-    add_value(command, "--crop", "X0,Y0,X1,Y1",
-              [&options](const std::string& text) { options.crop = read_crop("--crop", text); },
-              "only these pixels; X1 and Y1 are just outside");
+    add_value(
+        command, "--size", "WxH",
+        [&options](const std::string& text) { options.size = read_size("--size", text); },
+        "pixels (default: the scene's)");
+    add_value(
+        command, "--depth", "N[,N...]",
+        [&options](const std::string& text) { options.depths = read_depths("--depth", text); },
+        "generations of rays after the camera's, 0 to 64 (default: the scene's)");
+    add_value(
+        command, "--spp", "N",
+        [&options](const std::string& text) {
+            options.spp = read_whole<int>("--spp", text, 1, most_samples);
+        },
+        "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
+    add_value(
+        command, "--seed", "N",
+        [&options](const std::string& text) {
+            options.seed =
+                read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
+        },
+        "of the random numbers (default: 0)");
+    add_value(
+        command, "--crop", "X0,Y0,X1,Y1",
+        [&options](const std::string& text) { options.crop = read_crop("--crop", text); },
+        "only these pixels; X1 and Y1 are just outside");
 }
 
 void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
-    add_value(command, "--transfer", "CURVE",
-              [&encoding](const std::string& text) {
-                  encoding.transfer =
-                      read_choice<Transfer>("--transfer", text, {{"srgb", Transfer::srgb}, {"linear", Transfer::linear}});
-              },
-              "srgb or linear (default: srgb for 8 and 16 bits, linear for floats)");
-    add_value(command, "--rounding", "RULE",
-              [&encoding](const std::string& text) {
-                  encoding.rounding =
-                      read_choice<Rounding>("--rounding", text, {{"round", Rounding::round}, {"floor", Rounding::floor}});
-              },
-              "round or floor, for 8 and 16 bits (default: round)");
-    add_value(command, "--exposure", "STOPS",
-              [&encoding](const std::string& text) {
-                  encoding.exposure = static_cast<float>(read_number("--exposure", text, -most_stops, most_stops));
-              },
-              "makes the image 2^STOPS as bright (default: 0)");
-    add_value(command, "--pixel-type", "TYPE",
-              [&encoding](const std::string& text) {
-                  encoding.pixel_type = read_choice<PixelType>("--pixel-type", text,
-                                                               {{"half", PixelType::half},
-                                                                {"float", PixelType::float32},
-                                                                {"uint8", PixelType::uint8},
-                                                                {"uint16", PixelType::uint16}});
-              },
-              "half, float, uint8 or uint16 (default: the format's)");
+    add_value(
+        command, "--transfer", "CURVE",
+        [&encoding](const std::string& text) {
+            encoding.transfer = read_choice<Transfer>(
+                "--transfer", text, {{"srgb", Transfer::srgb}, {"linear", Transfer::linear}});
+        },
+        "srgb or linear (default: srgb for 8 and 16 bits, linear for floats)");
+    add_value(
+        command, "--rounding", "RULE",
+        [&encoding](const std::string& text) {
+            encoding.rounding = read_choice<Rounding>(
+                "--rounding", text, {{"round", Rounding::round}, {"floor", Rounding::floor}});
+        },
+        "round or floor, for 8 and 16 bits (default: round)");
+    add_value(
+        command, "--exposure", "STOPS",
+        [&encoding](const std::string& text) {
+            encoding.exposure = static_cast<float>(read_number("--exposure", text, -most_stops, most_stops));
+        },
+        "makes the image 2^STOPS as bright (default: 0)");
+    add_value(
+        command, "--pixel-type", "TYPE",
+        [&encoding](const std::string& text) {
+            encoding.pixel_type = read_choice<PixelType>("--pixel-type", text,
+                                                         {{"half", PixelType::half},
+                                                          {"float", PixelType::float32},
+                                                          {"uint8", PixelType::uint8},
+                                                          {"uint16", PixelType::uint16}});
+        },
+        "half, float, uint8 or uint16 (default: the format's)");
 }
 
 }  // namespace
@@ -238,17 +253,20 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
     const auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "renders a scene");
     command->add_option("SCENE", options->scene, "scene file: .nff or .test")->required()->type_name("FILE");
-    add_value(*command, "-o,--output", "FILE", [&options = *options](const std::string& text) { options.output = text; },
-              "image; {depth} stands for the depth (default: the scene's name, .png, here)");
+    add_value(
+        *command, "-o,--output", "FILE",
+        [&options = *options](const std::string& text) { options.output = text; },
+        "image; {depth} stands for the depth (default: the scene's name, .png, here)");
     add_image_options(*command, *options);
     add_encoding_options(*command, options->encoding);
     add_device_options(*command, common);
     add_common_options(*command, common);
-    command->footer("Examples:\n"
-                    "  sahl render balls.nff\n"
-                    "  sahl render balls.nff -o balls.exr --size 1920x1080 --spp 16\n"
-                    "  sahl render balls.nff --depth 0,1,2,3,4,7 -o 'd{depth}.png'\n"
-                    "  sahl render scene.test -o exact.png --transfer linear --rounding floor");
+    command->footer(
+        "Examples:\n"
+        "  sahl render balls.nff\n"
+        "  sahl render balls.nff -o balls.exr --size 1920x1080 --spp 16\n"
+        "  sahl render balls.nff --depth 0,1,2,3,4,7 -o 'd{depth}.png'\n"
+        "  sahl render scene.test -o exact.png --transfer linear --rounding floor");
     return {command, [options, &common] { return render(*options, common); }};
 }
 

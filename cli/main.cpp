@@ -29,7 +29,8 @@ bool use_color(ColorMode mode) {
 }
 
 void configure_log(const CommonOptions& common) {
-    if (common.quiet && common.verbose) throw Error(ExitCode::usage, "-q and -v contradict each other; give one");
+    if (common.quiet && common.verbose)
+        throw Error(ExitCode::usage, "-q and -v contradict each other; give one");
     set_log_color(use_color(common.color));
     if (common.quiet) set_log_level(LogLevel::quiet);
     if (common.verbose) set_log_level(LogLevel::verbose);
@@ -62,7 +63,8 @@ CLI::App& selected(CLI::App& app) {
 
 std::string help_hint(CLI::App& app) {
     const CLI::App& command = selected(app);
-    return fmt::format("\n'sahl {}--help' shows what there is", &command == &app ? "" : command.get_name() + " ");
+    return fmt::format("\n'sahl {}--help' shows what there is",
+                       &command == &app ? "" : command.get_name() + " ");
 }
 
 /// What to say of an argument that nothing takes, with the name it may have been meant to be.
@@ -111,11 +113,12 @@ void parse(CLI::App& app, int argc, char** argv) {
 ExitCode run(int argc, char** argv, CommonOptions& common) {
     CLI::App app{"Sahl renders scenes with OpenCL.", "sahl"};
     app.get_formatter()->column_width(34);
-    app.footer("Examples:\n"
-               "  sahl render scene.nff -o image.png\n"
-               "  sahl compare image.png reference.png --threshold 2/255\n"
-               "  sahl devices\n"
-               "Each command has its own --help.");
+    app.footer(
+        "Examples:\n"
+        "  sahl render scene.nff -o image.png\n"
+        "  sahl compare image.png reference.png --threshold 2/255\n"
+        "  sahl devices\n"
+        "Each command has its own --help.");
     bool version = false;
     app.add_flag("--version", version, "versions of Sahl, the OpenCL device and its driver");
     add_device_options(app, common);
@@ -161,8 +164,11 @@ int guarded_run(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return report(ExitCode::memory, "out of memory; a smaller --size needs less", common);
     } catch (const std::exception& error) {
-        return report(ExitCode::internal, fmt::format("internal error: {}; please report this with the command line and "
-                                                      "the scene", error.what()), common);
+        return report(ExitCode::internal,
+                      fmt::format("internal error: {}; please report this with the command line and "
+                                  "the scene",
+                                  error.what()),
+                      common);
     }
 }
 

@@ -12,7 +12,8 @@ constexpr std::string_view depth_placeholder = "{depth}";
 
 /// Any `{…}` that is no placeholder of ours is a mistake, not a file name.
 void check_placeholders(const std::string& pattern) {
-    for (std::size_t open = pattern.find('{'); open != std::string::npos; open = pattern.find('{', open + 1)) {
+    for (std::size_t open = pattern.find('{'); open != std::string::npos;
+         open = pattern.find('{', open + 1)) {
         const std::size_t close = pattern.find('}', open);
         if (close == std::string::npos) return;
         const std::string placeholder = pattern.substr(open, close - open + 1);
@@ -43,6 +44,7 @@ std::vector<std::filesystem::path> output_names(const std::optional<std::string>
     }
     if (!pattern) return {scene.stem().string() + ".png"};
     std::vector<std::filesystem::path> names;
+    names.reserve(depths.size());
     for (const int depth : depths) names.emplace_back(fill_in(*pattern, depth));
     return names;
 }

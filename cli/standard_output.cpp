@@ -14,7 +14,8 @@ namespace sahl::cli {
 void print(std::string_view text) {
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     if (!written || std::fflush(stdout) != 0) {
-        throw Error(ExitCode::output, fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+        throw Error(ExitCode::output,
+                    fmt::format("standard output cannot be written: {}", std::strerror(errno)));
     }
 }
 

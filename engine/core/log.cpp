@@ -29,9 +29,12 @@ Log& log() {
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {
     switch (level) {
-        case LogLevel::quiet: return spdlog::level::err;
-        case LogLevel::normal: return spdlog::level::warn;
-        case LogLevel::verbose: break;
+        case LogLevel::quiet:
+            return spdlog::level::err;
+        case LogLevel::normal:
+            return spdlog::level::warn;
+        case LogLevel::verbose:
+            break;
     }
     return spdlog::level::debug;
 }

@@ -67,8 +67,8 @@ std::string Progress::text(std::uint64_t done, std::uint64_t total, double secon
 
 void Progress::draw_bar(std::uint64_t done, std::uint64_t total, const std::string& status) {
     const auto filled = static_cast<std::size_t>(share(done, total) * static_cast<double>(bar_cells));
-    std::string line =
-        fmt::format("{}  [{}{}] {}", label_, std::string(filled, '#'), std::string(bar_cells - filled, '.'), status);
+    std::string line = fmt::format("{}  [{}{}] {}", label_, std::string(filled, '#'),
+                                   std::string(bar_cells - filled, '.'), status);
     const std::size_t width = line.size();
     if (width < bar_width_) line.append(bar_width_ - width, ' ');
     out_ << '\r' << line << std::flush;

@@ -7,7 +7,9 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// 8-bit images of 10x10 pixels: grey 100, the first `count` pixels `steps` brighter in green.
 void write_grey(const std::filesystem::path& path, int count, int steps) {

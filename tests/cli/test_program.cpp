@@ -8,7 +8,9 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 /// An OpenCL loader without drivers.
 ProcessOptions without_opencl(const std::filesystem::path& empty_folder) {
@@ -20,8 +22,10 @@ ProcessOptions without_opencl(const std::filesystem::path& empty_folder) {
 }
 
 TEST_CASE("program: --help of each command has examples", "[cli]") {
-    for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"--help"}, {"render", "--help"}, {"compare", "-h"}, {"devices", "--help"}}) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                      {"render", "--help"},
+                                                      {"compare", "-h"},
+                                                      {"devices", "--help"}}) {
         const ProcessResult result = run_sahl(arguments);
         INFO(result.out << result.err);
         CHECK(result.status == 0);

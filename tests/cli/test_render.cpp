@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "engine/film/image_io.h"
 #include "tests/cli/sahl_program.h"
@@ -14,7 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 std::string mirrors() { return scene_file("cli_mirrors.nff"); }
 
@@ -29,7 +31,8 @@ ProcessResult render_in(const fs::path& folder, std::vector<std::string> argumen
 
 std::vector<std::string> files_in(const fs::path& folder) {
     std::vector<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename());
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+        names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -95,7 +98,7 @@ TEST_CASE("render: a crop is that part of the whole image, bit for bit", "[cli]"
     REQUIRE(part.width == 20);
     REQUIRE(part.height == 24);
     REQUIRE(all.channels == part.channels);
-    const auto row_size = static_cast<std::size_t>(part.width * part.channels);
+    const auto row_size = static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.channels);
     int different_rows = 0;
     for (int y = 0; y < part.height; ++y) {
         const float* expected = all.pixels.data() + ((y + 5) * all.width + 11) * all.channels;
@@ -118,7 +121,8 @@ TEST_CASE("render: --exposure brightens, --size and --spp are obeyed", "[cli]") 
     const Image bright = render_file("bright.exr", {"--size", "20x10", "--exposure", "-1"});
     REQUIRE(bright.pixels.size() == plain.pixels.size());
     int different = 0;
-    for (std::size_t i = 0; i < plain.pixels.size(); ++i) different += bright.pixels[i] != plain.pixels[i] / 2;
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+        different += bright.pixels[i] != plain.pixels[i] / 2;
     CHECK(different == 0);
     CHECK(render_file("samples.exr", {"--size", "20x10", "--spp", "5"}).pixels != plain.pixels);
 }
@@ -147,7 +151,8 @@ TEST_CASE("render: --json tells what was done, line by line", "[cli]") {
         CHECK(generations[0].at("rays") == 48 * 32 * 2);
         for (const char* kind : {"rays", "shadow_rays"}) {
             std::uint64_t sum = 0;
-            for (const nlohmann::json& generation : generations) sum += generation.at(kind).get<std::uint64_t>();
+            for (const nlohmann::json& generation : generations)
+                sum += generation.at(kind).get<std::uint64_t>();
             CHECK(image.at(kind) == sum);
         }
     }
@@ -160,8 +165,8 @@ TEST_CASE("render: paths with spaces and UTF-8", "[cli]") {
     fs::copy_file(mirrors(), room / "eine Szene ü.nff");
     render_in(room, {"eine Szene ü.nff", "--size", "8x8"});
     CHECK(fs::exists(room / "eine Szene ü.png"));
-    const ProcessResult result = render_in(
-        folder.path(), {"--json", (room / "eine Szene ü.nff").string(), "--size", "8x8", "-o", room / "[1] 光.png"});
+    const ProcessResult result = render_in(folder.path(), {"--json", (room / "eine Szene ü.nff").string(),
+                                                           "--size", "8x8", "-o", room / "[1] 光.png"});
     CHECK(fs::exists(room / "[1] 光.png"));
     CHECK(json_lines(result.out).back().at("path") == (room / "[1] 光.png").string());
 }
@@ -196,7 +201,8 @@ TEST_CASE("render: an image that cannot be written is exit status 6, before any 
     write_file(folder.path() / "file", "");
     fs::create_directory(folder.path() / "folder.png");
     for (const std::string output : {"file/image.png", "folder.png"}) {
-        const ProcessResult result = run_sahl_in(folder.path(), {"render", mirrors(), "-o", output, "--json"});
+        const ProcessResult result =
+            run_sahl_in(folder.path(), {"render", mirrors(), "-o", output, "--json"});
         INFO(output << ": " << result.err);
         CHECK(result.status == 6);
         CHECK(contains(result.err, output));

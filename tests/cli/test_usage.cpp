@@ -1,6 +1,6 @@
 // Command lines that cannot be meant: exit status 2 and a message that says what is allowed.
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "tests/cli/sahl_program.h"
 
@@ -9,8 +9,8 @@ namespace {
 
 struct Mistake {
     std::vector<std::string> arguments;
-    std::string message;       ///< what standard error has to say, among other things
-    std::string more_message;  ///< and this
+    std::string message;            ///< what standard error has to say, among other things
+    std::string more_message = {};  ///< and this
 };
 
 void check_refused(const Mistake& mistake) {
@@ -59,7 +59,9 @@ struct Refusal {
 
 TEST_CASE("usage: values outside their range", "[cli]") {
     const auto refusal = GENERATE(values<Refusal>({
-        {"--spp", "1 to 16384", {"0", "16385", "-1", "4.5", "many", "", "1 ", "0x10", "99999999999999999999"}},
+        {"--spp",
+         "1 to 16384",
+         {"0", "16385", "-1", "4.5", "many", "", "1 ", "0x10", "99999999999999999999"}},
         {"--depth", "0 to 64", {"-1", "65", "", "1,", ",1", "1,,2", "1;2", "two"}},
         {"--depth", "each depth once", {"1,1", "0,1,2,0"}},
         {"--size", "1 to 65536", {"0x10", "10x0", "65537x1", "x", "-4x4", "4 x4", "4.0x4"}},
@@ -76,7 +78,8 @@ TEST_CASE("usage: values outside their range", "[cli]") {
         {"--color", "auto, always, never", {"yes"}},
     }));
     for (const std::string& text : refusal.texts) {
-        const std::vector<std::string> arguments{"render", scene_file("cli_mirrors.nff"), refusal.option, text};
+        const std::vector<std::string> arguments{"render", scene_file("cli_mirrors.nff"), refusal.option,
+                                                 text};
         check_refused({arguments, fmt::format("{} '", refusal.option), refusal.wanted});
     }
 }

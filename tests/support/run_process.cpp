@@ -47,7 +47,8 @@ std::vector<std::string> child_environment(const ProcessOptions& options) {
     std::vector<std::string> variables;
     for (char** entry = environ; *entry != nullptr; ++entry) {
         const std::string variable = *entry;
-        if (!options.environment.contains(variable.substr(0, variable.find('=')))) variables.push_back(variable);
+        if (!options.environment.contains(variable.substr(0, variable.find('='))))
+            variables.push_back(variable);
     }
     for (const auto& [name, value] : options.environment) {
         if (value) variables.push_back(name + "=" + *value);
@@ -57,19 +58,22 @@ std::vector<std::string> child_environment(const ProcessOptions& options) {
 
 std::vector<char*> pointers(std::vector<std::string>& texts) {
     std::vector<char*> result;
+    result.reserve(texts.size() + 1);
     for (std::string& text : texts) result.push_back(text.data());
     result.push_back(nullptr);
     return result;
 }
 
-pid_t spawn(std::vector<std::string> command, const ProcessOptions& options, const Pipe& out, const Pipe& err) {
+pid_t spawn(std::vector<std::string> command, const ProcessOptions& options, const Pipe& out,
+            const Pipe& err) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     if (options.standard_output.empty()) {
         posix_spawn_file_actions_adddup2(&actions, out.write_end, 1);
     } else {
-        posix_spawn_file_actions_addopen(&actions, 1, options.standard_output.c_str(), O_WRONLY | O_CREAT, 0600);
+        posix_spawn_file_actions_addopen(&actions, 1, options.standard_output.c_str(), O_WRONLY | O_CREAT,
+                                         0600);
     }
     posix_spawn_file_actions_adddup2(&actions, err.write_end, 2);
     if (!options.working_directory.empty()) {
@@ -87,8 +91,8 @@ pid_t spawn(std::vector<std::string> command, const ProcessOptions& options, con
 
     std::vector<std::string> variables = child_environment(options);
     pid_t child = -1;
-    const int error = posix_spawn(&child, command.front().c_str(), &actions, &attributes, pointers(command).data(),
-                                  pointers(variables).data());
+    const int error = posix_spawn(&child, command.front().c_str(), &actions, &attributes,
+                                  pointers(command).data(), pointers(variables).data());
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     check(error, command.front().c_str());
@@ -119,15 +123,16 @@ ProcessResult run_process(const std::vector<std::string>& command, const Process
     ProcessResult result;
     const auto deadline = std::chrono::steady_clock::now() + options.timeout;
     while (out.read_end >= 0 || err.read_end >= 0) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline -
-                                                                                 std::chrono::steady_clock::now());
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+            deadline - std::chrono::steady_clock::now());
         if (left.count() <= 0 && !result.timed_out) {
             result.timed_out = true;
             kill(child, SIGKILL);
         }
         // poll() passes over closed ends (-1).
         std::array<pollfd, 2> ends{pollfd{out.read_end, POLLIN, 0}, pollfd{err.read_end, POLLIN, 0}};
-        if (poll(ends.data(), ends.size(), result.timed_out ? 1000 : static_cast<int>(left.count()) + 1) <= 0) {
+        if (poll(ends.data(), ends.size(), result.timed_out ? 1000 : static_cast<int>(left.count()) + 1) <=
+            0) {
             // Killed, and still nobody closes the pipes: a grandchild holds them.
             if (result.timed_out) break;
             continue;

@@ -14,7 +14,8 @@ struct Display {
     std::ostringstream out;
     Progress progress;
 
-    explicit Display(ProgressStyle style) : progress(out, style, "depth 4", "samples", [this] { return now; }) {}
+    explicit Display(ProgressStyle style)
+        : progress(out, style, "depth 4", "samples", [this] { return now; }) {}
 
     /// What an update after `seconds` more writes.
     std::string after(double seconds, std::uint64_t done, std::uint64_t total) {
