@@ -1,0 +1,197 @@
+#include "tests/device/traced_rays.h"
+
+#include <bit>
+
+namespace sahl::tests {
+namespace {
+
+constexpr const char* kKernels = R"(
+#include "kernels/intersect.cl"
+#include "kernels/surface.h"
+
+kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices, const global uint* children,
+                        const uint child_count, const global float* rays, const global uint* ray_ids,
+                        global float* hits, global uint* hit_primitives, const uint count) {
+    const Bvh bvh = {0, leaves, polygon_vertices, 0.0f};
+    TEST_FOR_EACH(i, count) {
+        Ray ray = load_ray(rays, ray_ids, count, i);
+        RayShear shear = ray_shear(ray.origin, ray.direction);
+        HitState state = hit_state(0.0f, INFINITY);
+        for (uint k = 0; k < child_count; ++k) { intersect_leaf(&bvh, children[k], &ray, &shear, &state, false); }
+        store_soa3(hits, SAHL_HIT_T, count, i, (float3)(state.t, state.u, state.v));
+        hit_primitives[i] = state.primitive;
+    }
+}
+
+kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
+                      const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
+                      global uint* out, const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, extent};
+    TEST_FOR_EACH(i, count) {
+        Ray ray = load_ray(rays, ray_ids, count, i);
+        out[i] = any_hit(&bvh, &ray, t_max);
+    }
+}
+
+kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
+                 const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
+                 const uint longest, global uint* out, const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, extent};
+    TEST_FOR_EACH(i, count) {
+        Ray ray = load_ray(rays, ray_ids, count, i);
+        global uint* crossings = out + (size_t)i * (1u + 2u * longest);
+        uint met = 0;
+        HitState hit = closest_hit(&bvh, &ray, hit_state(0.0f, t_max));
+        while (hit.primitive != SAHL_NO_PRIMITIVE && met < longest) {
+            crossings[1u + met] = hit.primitive;
+            crossings[1u + longest + met] = as_uint(hit.t);
+            ++met;
+            hit = closest_hit(&bvh, &ray, hit_state_behind(hit, t_max));
+        }
+        crossings[0] = met;
+    }
+}
+
+static inline void store_parts(global float* to, real3 v) {
+    float3 rounded = round3(v);
+    vstore3(rounded, 0, to);
+    vstore3(round3(v - convert_real3(rounded)), 1, to);
+}
+
+kernel void surfaces(const global DevicePrimitive* primitives, const global float* shape_data, const global float* rays,
+                     const global float* hits, const global uint* hit_primitives, global float* out, const uint count) {
+    TEST_FOR_EACH(i, count) {
+        if (hit_primitives[i] == SAHL_NO_PRIMITIVE) { continue; }
+        float3 hit = load_soa3(hits, SAHL_HIT_T, count, i);
+        real3 o = convert_real3(load_soa3(rays, SAHL_RAY_ORIGIN, count, i));
+        real3 d = convert_real3(load_soa3(rays, SAHL_RAY_DIRECTION, count, i));
+        Surface s = surface_at(primitives, shape_data, hit_primitives[i], o, d, hit.x, hit.y, hit.z);
+        store_parts(out + 19 * i, s.position);
+        store_parts(out + 19 * i + 6, s.ng);
+        store_parts(out + 19 * i + 12, s.ns);
+        out[19 * i + 18] = s.offset;
+    }
+}
+)";
+
+/// The leaves that the tree refers to.
+std::vector<std::uint32_t> leaf_children(DeviceScene& scene) {
+    std::vector<std::uint32_t> children;
+    for (const device::BvhNode& node :
+         scene.nodes.map<device::BvhNode>(MapMode::read, scene.nodes.bytes() / sizeof(device::BvhNode))) {
+        for (int slot = 0; slot < 8; ++slot) {
+            if (node.lo_x[slot] <= node.hi_x[slot] && (node.child[slot] & SAHL_CHILD_LEAF))
+                children.push_back(node.child[slot]);
+        }
+    }
+    return children;
+}
+
+glm::dvec3 sum_of_parts(const float* parts) {
+    glm::dvec3 sum;
+    for (int k = 0; k < 3; ++k) sum[k] = static_cast<double>(parts[k]) + static_cast<double>(parts[k + 3]);
+    return sum;
+}
+
+}  // namespace
+
+bool operator==(const TestHit& a, const TestHit& b) {
+    const auto same = [](float x, float y) {
+        return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+    };
+    return a.primitive == b.primitive && same(a.t, b.t) && same(a.u, b.u) && same(a.v, b.v);
+}
+
+RayTracer::RayTracer(const std::string& options) : runner_(kKernels, options) {}
+
+RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays) {
+    const std::size_t count = rays.size();
+    Batch batch{Buffer(device(), SAHL_RAY_FLOATS * count * sizeof(float), "rays"),
+                Buffer(device(), SAHL_RAY_UINTS * count * sizeof(std::uint32_t), "ray ids"),
+                Buffer(device(), SAHL_HIT_FLOATS * count * sizeof(float), "hits"),
+                Buffer(device(), count * sizeof(std::uint32_t), "hit primitives"),
+                static_cast<std::uint32_t>(count)};
+    const auto floats = batch.rays.map<float>(MapMode::write, SAHL_RAY_FLOATS * count);
+    const auto ids = batch.ids.map<std::uint32_t>(MapMode::write, SAHL_RAY_UINTS * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count + i] = rays[i].origin[k];
+            floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count + i] = rays[i].direction[k];
+        }
+        ids[SAHL_RAY_EXCLUDE * count + i] = rays[i].exclude;
+    }
+    return batch;
+}
+
+std::vector<TestHit> RayTracer::download(Batch& batch) {
+    const std::size_t count = batch.count;
+    const auto floats = batch.hits.map<float>(MapMode::read, SAHL_HIT_FLOATS * count);
+    const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::read, count);
+    std::vector<TestHit> hits;
+    hits.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+        hits.push_back({floats[i], floats[count + i], floats[2 * count + i], primitives[i]});
+    return hits;
+}
+
+std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::vector<TestRay>& rays) {
+    Batch batch = upload(rays);
+    runner_.run("intersect", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.constants,
+                batch.rays, batch.ids, batch.hits, batch.primitives, batch.count);
+    return download(batch);
+}
+
+std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vector<TestRay>& rays) {
+    Batch batch = upload(rays);
+    const std::vector<std::uint32_t> children = leaf_children(scene);
+    runner_.run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, runner_.upload(children),
+                static_cast<std::uint32_t>(children.size()), batch.rays, batch.ids, batch.hits,
+                batch.primitives);
+    return download(batch);
+}
+
+std::vector<std::uint32_t> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                                float t_max) {
+    Batch batch = upload(rays);
+    runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+                scene.constants.extent, batch.rays, batch.ids, t_max, batch.primitives);
+    return KernelRunner::download<std::uint32_t>(batch.primitives, batch.count);
+}
+
+std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                      float t_max) {
+    Batch batch = upload(rays);
+    Buffer out(device(), batch.count * sizeof(TestWalk), "crossings");
+    runner_.run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+                scene.constants.extent, batch.rays, batch.ids, t_max, TestWalk::longest, out);
+    return KernelRunner::download<TestWalk>(out, batch.count);
+}
+
+std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                             const std::vector<TestHit>& hits) {
+    Batch batch = upload(rays);
+    {
+        const std::size_t count = batch.count;
+        const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * count);
+        const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::write, count);
+        for (std::size_t i = 0; i < count; ++i) {
+            floats[i] = hits[i].t;
+            floats[count + i] = hits[i].u;
+            floats[2 * count + i] = hits[i].v;
+            primitives[i] = hits[i].primitive;
+        }
+    }
+    constexpr std::size_t kFloats = 19;
+    Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
+    runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, batch.rays, batch.hits,
+                batch.primitives, out);
+    const std::vector<float> parts = KernelRunner::download<float>(out, kFloats * batch.count);
+    std::vector<TestSurface> result;
+    for (std::size_t i = 0; i < batch.count; ++i) {
+        const float* p = &parts[kFloats * i];
+        result.push_back({sum_of_parts(p), sum_of_parts(p + 6), sum_of_parts(p + 12), p[18]});
+    }
+    return result;
+}
+
+}  // namespace sahl::tests
