@@ -12,6 +12,7 @@
 #include <glm/vec2.hpp>
 
 #include "engine/core/error.h"
+#include "engine/render/two_floats.h"
 
 namespace sahl {
 namespace {
@@ -92,14 +93,14 @@ public:
 private:
     void push(const vec3& v) { out_.shape_data.insert(out_.shape_data.end(), {v.x, v.y, v.z}); }
 
-    /// A value in two parts: floats and what they lack.
+    /// Three high parts, then three low ones.
     void push_exact(const dvec3& v) {
-        push(vec3(v));
-        push(vec3(v - dvec3(vec3(v))));
+        const TwoFloats x = split(v.x), y = split(v.y), z = split(v.z);
+        out_.shape_data.insert(out_.shape_data.end(), {x.high, y.high, z.high, x.low, y.low, z.low});
     }
     void push_exact(double v) {
-        const auto rounded = static_cast<float>(v);
-        out_.shape_data.insert(out_.shape_data.end(), {rounded, static_cast<float>(v - rounded)});
+        const TwoFloats parts = split(v);
+        out_.shape_data.insert(out_.shape_data.end(), {parts.high, parts.low});
     }
 
     void add_triangle(const Triangle& triangle) {

@@ -8,16 +8,17 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/error.h"
+#include "engine/render/two_floats.h"
 #include "engine/render/wavefront.h"
 
 namespace sahl {
 namespace {
 
-/// A vector in two parts: floats and what they lack.
-void split3(float (&value)[3], float (&lacking)[3], const glm::dvec3& from) {
+void split3(float (&high)[3], float (&low)[3], const glm::dvec3& from) {
     for (int k = 0; k < 3; ++k) {
-        value[k] = static_cast<float>(from[k]);
-        lacking[k] = static_cast<float>(from[k] - value[k]);
+        const TwoFloats parts = split(from[k]);
+        high[k] = parts.high;
+        low[k] = parts.low;
     }
 }
 
