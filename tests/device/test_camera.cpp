@@ -1,0 +1,155 @@
+// kernels/camera.h: the order of a crop's pixels, and the engine's own camera rays against the oracle's.
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "kernels/device_types.h"
+#include "tests/support/kernel_runner.h"
+#include "tests/support/oracle/render.h"
+
+namespace sahl::tests {
+namespace {
+
+using glm::dvec3;
+using Pixel = std::array<std::uint32_t, 2>;
+
+constexpr const char* kKernels = R"(
+#include "kernels/generate.cl"
+kernel void pixels(const uint width, const uint height, global uint2* out, const uint count) {
+    TEST_FOR_EACH(i, count) { out[i] = crop_pixel(i, width, height); }
+}
+)";
+
+/// A vector as the floats nearest to it and what they lack.
+void split(const dvec3& v, float (&value)[3], float (&low)[3]) {
+    for (int k = 0; k < 3; ++k) {
+        value[k] = static_cast<float>(v[k]);
+        low[k] = static_cast<float>(v[k] - static_cast<double>(value[k]));
+    }
+}
+
+device::CameraConstants constants(const Camera& camera, const Resolution& resolution) {
+    const dvec3 back = glm::normalize(camera.eye - camera.look_at);
+    const dvec3 right = glm::normalize(glm::cross(camera.up, back));
+    const double pixel = 2 * std::tan(camera.fov_y * std::numbers::pi / 360) / resolution.height;
+    device::CameraConstants result{};
+    split(camera.eye, result.eye, result.eye_low);
+    split(-back, result.forward, result.forward_low);
+    split(right * pixel, result.step_x, result.step_x_low);
+    split(glm::cross(back, right) * -pixel, result.step_y, result.step_y_low);
+    result.half_width = static_cast<float>(resolution.width) / 2;
+    result.half_height = static_cast<float>(resolution.height) / 2;
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("the order of pixels visits each pixel of a crop once, in strips of eight rows") {
+    KernelRunner runner(kKernels);
+    const std::vector<Pixel> sizes{{1, 1}, {1, 9},    {13, 1},   {17, 13},  {8, 8},
+                                   {5, 7}, {3, 1000}, {1000, 3}, {640, 361}};
+    for (const auto& [width, height] : sizes) {
+        CAPTURE(width, height);
+        const std::size_t count = std::size_t{width} * height;
+        Buffer out(runner.device(), count * sizeof(Pixel), "pixels");
+        runner.run("pixels", count, width, height, out);
+        const std::vector<Pixel> order = KernelRunner::download<Pixel>(out, count);
+        std::vector<int> visits(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            REQUIRE((order[i][0] < width && order[i][1] < height));
+            ++visits[order[i][1] * width + order[i][0]];
+            REQUIRE(order[i][1] / 8 == i / (std::size_t{8} * width));
+        }
+        CHECK(std::count(visits.begin(), visits.end(), 1) == static_cast<std::ptrdiff_t>(count));
+    }
+}
+
+TEST_CASE("camera rays go where the oracle's go") {
+    KernelRunner runner(kKernels);
+    const std::vector<Camera> cameras{{},
+                                      {{1, 2, 3}, {-4, 0.5, 2}, {0.1, 1, 0.2}, 90},
+                                      {{1e6, -1e6, 1e5}, {1e6, -1e6, 0}, {1, 1, 0}, 3},
+                                      {{0, 0, 1e-3}, {1e-3, 0, 0}, {0, 0, 1}, 170}};
+    const Resolution resolution{37, 21};
+    const device::WaveConstants wave{0, 0, 37 * 21, 1, 0, 0, 37, 21, 5, 0, {}};
+    for (const Camera& camera : cameras) {
+        const std::size_t count = wave.count;
+        Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
+        Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
+        runner.run("generate", count, constants(camera, resolution), wave, rays, ids);
+        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
+        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
+        const auto vector = [&](std::size_t first, std::size_t i) {
+            return dvec3(floats[first * count + i], floats[(first + 1) * count + i],
+                         floats[(first + 2) * count + i]);
+        };
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t pixel = words[SAHL_RAY_PIXEL * count + i];
+            const oracle::Ray wanted =
+                oracle::camera_ray(camera, resolution, pixel % 37 + 0.5, pixel / 37 + 0.5);
+            const dvec3 origin = vector(SAHL_RAY_ORIGIN, i), direction = vector(SAHL_RAY_DIRECTION, i);
+            REQUIRE(words[SAHL_RAY_EXCLUDE * count + i] == SAHL_NO_PRIMITIVE);
+            REQUIRE(vector(SAHL_RAY_WEIGHT, i) == dvec3(1));
+            REQUIRE(glm::distance(direction, wanted.direction) < 1e-7);
+            REQUIRE(glm::distance(origin, wanted.origin) <= 1e-7 * glm::length(wanted.origin));
+            // With what the floats lack.
+            REQUIRE(glm::distance(direction + vector(SAHL_RAY_DIRECTION_LOW, i), wanted.direction) < 1e-13);
+            REQUIRE(glm::distance(origin + vector(SAHL_RAY_ORIGIN_LOW, i), wanted.origin) <=
+                    1e-14 * glm::length(wanted.origin));
+        }
+    }
+}
+
+TEST_CASE("a crop and a later part of the samples get the rays of the whole image") {
+    KernelRunner runner(kKernels);
+    const Camera camera{{1, 2, 3}, {-4, 0.5, 2}, {0, 1, 0}, 60};
+    const Resolution resolution{40, 30};
+    constexpr std::uint32_t kSpp = 3;
+    // Directions by film pixel and sample.
+    const auto generate = [&](const device::WaveConstants& wave) {
+        const std::size_t count = wave.count;
+        Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
+        Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
+        runner.run("generate", count, constants(camera, resolution), wave, rays, ids);
+        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
+        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
+        std::vector<std::array<float, 3>> result(std::size_t{wave.crop_width} * wave.crop_height * kSpp);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < 3; ++k)
+                result[words[i] * kSpp + (wave.first_low + i) % kSpp][k] =
+                    floats[(SAHL_RAY_DIRECTION + k) * count + i];
+        }
+        return result;
+    };
+    const auto whole = generate({0, 0, 40 * 30 * kSpp, kSpp, 0, 0, 40, 30, 9, 1, {}});
+    const auto crop = generate({0, 0, 11 * 13 * kSpp, kSpp, 7, 5, 11, 13, 9, 1, {}});
+    for (std::size_t y = 0; y < 13; ++y) {
+        for (std::size_t i = 0; i < 11 * kSpp; ++i)
+            REQUIRE(crop[y * 11 * kSpp + i] == whole[((y + 5) * 40 + 7) * kSpp + i]);
+    }
+    auto parts = generate({0, 0, 500, kSpp, 0, 0, 40, 30, 9, 1, {}});
+    const auto rest = generate({500, 0, 40 * 30 * kSpp - 500, kSpp, 0, 0, 40, 30, 9, 1, {}});
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i] == std::array<float, 3>{}) parts[i] = rest[i];
+    }
+    CHECK(parts == whole);
+}
+
+TEST_CASE("samples are numbered beyond 32 bits") {
+    KernelRunner runner(kKernels);
+    // Sample 2^32 of 2^14 a pixel is the first of pixel 2^18: the top left one of strip 32 of 1024 columns.
+    const device::WaveConstants wave{0, 1, 10, 16384, 0, 0, 1024, 1024, 0, 0, {}};
+    Buffer rays(runner.device(), SAHL_RAY_FLOATS * std::size_t{wave.count} * 4, "rays");
+    Buffer ids(runner.device(), SAHL_RAY_UINTS * std::size_t{wave.count} * 4, "ids");
+    runner.run("generate", wave.count, constants({}, {1024, 1024}), wave, rays, ids);
+    for (const std::uint32_t pixel : KernelRunner::download<std::uint32_t>(ids, wave.count))
+        CHECK(pixel == 256 * 1024);
+}
+
+}  // namespace sahl::tests
