@@ -20,7 +20,7 @@ typedef struct {
 } Bvh;
 
 typedef struct {
-    float3 inverse;       // 1/direction, finite
+    float3 inverse;  // 1/direction, finite
     float3 near_addend;
     float3 far_addend;
     uint near_x, near_y, near_z;  // which float8 of a node is the near plane
@@ -28,13 +28,12 @@ typedef struct {
 } RayBoxTest;
 
 /// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
-static inline float finite_inverse(float d) {
-    return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d);
-}
+static inline float finite_inverse(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
 
 static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float extent) {
     RayBoxTest test;
-    float3 r = (float3)(finite_inverse(direction.x), finite_inverse(direction.y), finite_inverse(direction.z));
+    float3 r =
+        (float3)(finite_inverse(direction.x), finite_inverse(direction.y), finite_inverse(direction.z));
     float3 e = (fabs(origin) + extent) * 0x1p-20f * fabs(r);
     test.inverse = r;
     test.near_addend = -(origin * r) - e;
@@ -47,8 +46,8 @@ static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float ext
 }
 
 /// The children whose boxes the ray meets between t_min and t_max; *entry: where it enters each.
-static inline uint intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min, float t_max,
-                               float8* entry) {
+static inline uint intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min,
+                                      float t_max, float8* entry) {
     const global float* planes = (const global float*)node;
     float3 r = test->inverse, n = test->near_addend, f = test->far_addend;
     float8 near_x = fma(vload8(test->near_x, planes), (float8)(r.x), (float8)(n.x));
@@ -62,6 +61,22 @@ static inline uint intersect_children(const global BvhNode* node, const RayBoxTe
     float8 leave = SAHL_MIN(SAHL_MIN(far_x, far_y), SAHL_MIN(far_z, (float8)(t_max)));
     *entry = enter;
     return mask8_le(enter, leave);
+}
+
+/// `t` within the box lo..hi; NaN becomes where the ray enters it. The planes go through the same
+/// arithmetic as a node's, and fma is monotonic, so the result lies within every box around this
+/// one: a flat primitive whose distance is kept to its own box is never culled wrongly, however
+/// badly a grazing ray has defined that distance.
+static inline float keep_to_box(float t, float3 lo, float3 hi, const RayBoxTest* test) {
+    bool forward_x = test->near_x == 0u, forward_y = test->near_y == 1u, forward_z = test->near_z == 2u;
+    float3 entry_planes = (float3)(forward_x ? lo.x : hi.x, forward_y ? lo.y : hi.y, forward_z ? lo.z : hi.z);
+    float3 exit_planes = (float3)(forward_x ? hi.x : lo.x, forward_y ? hi.y : lo.y, forward_z ? hi.z : lo.z);
+    float3 enter = fma(entry_planes, test->inverse, test->near_addend);
+    float3 leave = fma(exit_planes, test->inverse, test->far_addend);
+    float nearest = SAHL_MAX(SAHL_MAX(enter.x, enter.y), enter.z);
+    float farthest = SAHL_MIN(SAHL_MIN(leave.x, leave.y), leave.z);
+    t = t > nearest ? t : nearest;
+    return t < farthest ? t : farthest;
 }
 
 #endif

@@ -7,8 +7,8 @@
 
 #include "kernels/ray_batch.h"
 
-kernel void count_children(const global uint* outcomes, global uint* block_counts, global uint* block_shadow_rays,
-                           const uint count, const uint block_count) {
+kernel void count_children(const global uint* outcomes, global uint* block_counts,
+                           global uint* block_shadow_rays, const uint count, const uint block_count) {
     const uint block = (uint)get_global_id(0);
     if (block >= block_count) {
         return;
@@ -48,8 +48,9 @@ kernel void sum_children(global uint* block_counts, const global uint* block_sha
 }
 
 /// Copies ray `from` of the children to ray `to` of the two batches together.
-static inline void move_ray(const global float* children, const global uint* child_ids, uint from, global float* next,
-                     global uint* next_ids, global float* waiting, global uint* waiting_ids, uint capacity, uint to) {
+static inline void move_ray(const global float* children, const global uint* child_ids, uint from,
+                            global float* next, global uint* next_ids, global float* waiting,
+                            global uint* waiting_ids, uint capacity, uint to) {
     global float* rays = to < capacity ? next : waiting;
     global uint* ids = to < capacity ? next_ids : waiting_ids;
     uint slot = to < capacity ? to : to - capacity;
@@ -62,8 +63,9 @@ static inline void move_ray(const global float* children, const global uint* chi
 }
 
 kernel void compact(const global float* children, const global uint* child_ids, const global uint* outcomes,
-                    const global uint* block_counts, global float* next, global uint* next_ids, global float* waiting,
-                    global uint* waiting_ids, const uint capacity, const uint count, const uint block_count) {
+                    const global uint* block_counts, global float* next, global uint* next_ids,
+                    global float* waiting, global uint* waiting_ids, const uint capacity, const uint count,
+                    const uint block_count) {
     const uint block = (uint)get_global_id(0);
     if (block >= block_count) {
         return;
@@ -77,7 +79,8 @@ kernel void compact(const global float* children, const global uint* child_ids, 
             move_ray(children, child_ids, i, next, next_ids, waiting, waiting_ids, capacity, to_reflected++);
         }
         if (outcomes[i] & SAHL_OUTCOME_TRANSMITTED) {
-            move_ray(transmitted, transmitted_ids, i, next, next_ids, waiting, waiting_ids, capacity, to_transmitted++);
+            move_ray(transmitted, transmitted_ids, i, next, next_ids, waiting, waiting_ids, capacity,
+                     to_transmitted++);
         }
     }
 }

@@ -3,8 +3,8 @@
 #include "kernels/camera.h"
 #include "kernels/ray_batch.h"
 
-kernel void generate(const CameraConstants camera, const WaveConstants wave, global float* rays, global uint* ray_ids,
-                     const uint capacity) {
+kernel void generate(const CameraConstants camera, const WaveConstants wave, global float* rays,
+                     global uint* ray_ids, const uint capacity) {
     const ulong first = (ulong)wave.first_high << 32 | wave.first_low;
     const uint2 seed = (uint2)(wave.seed_low, wave.seed_high);
     SAHL_FOR_EACH_RAY(i, wave.count) {

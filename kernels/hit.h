@@ -65,8 +65,8 @@ static inline void offer_hit(HitState* state, float t, float u, float v, uint id
 /// Offers the two roots of a curved surface: where the ray enters the solid it bounds and where it
 /// leaves. A ray that starts on the surface drops the root at its origin, a surface that is seen
 /// from inside only drops the entering one.
-static inline void offer_roots(HitState* state, float enter, bool enter_valid, float leave, bool leave_valid, uint id,
-                        uint exclude, bool any_hit) {
+static inline void offer_roots(HitState* state, float enter, bool enter_valid, float leave, bool leave_valid,
+                               uint id, uint exclude, bool any_hit) {
     if ((id & SAHL_ID_MASK) == exclude) {
         bool enter_is_origin = fabs(enter) < fabs(leave);
         enter_valid = enter_valid && !enter_is_origin;

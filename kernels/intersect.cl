@@ -3,9 +3,10 @@
 #include "kernels/ray_batch.h"
 #include "kernels/traverse_scalar.h"
 
-kernel void intersect(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                      const SceneConstants scene, const global float* rays, const global uint* ray_ids,
-                      global float* hits, global uint* hit_primitives, const uint capacity, const uint count) {
+kernel void intersect(const global BvhNode* nodes, const global uchar* leaves,
+                      const global float* polygon_vertices, const SceneConstants scene,
+                      const global float* rays, const global uint* ray_ids, global float* hits,
+                      global uint* hit_primitives, const uint capacity, const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, scene.extent};
     SAHL_FOR_EACH_RAY(i, count) {
         Ray ray = load_ray(rays, ray_ids, capacity, i);

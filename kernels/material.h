@@ -20,7 +20,8 @@ static inline float3 phong_light(const global DeviceMaterial* material, float3 n
     if (material->flags & SAHL_MATERIAL_BLINN) {
         float3 h = wi + wo;
         float length2 = dot3(h, h);
-        lobe = length2 > 0.0f ? power(SAHL_MAX(dot3(ns, h) / sqrt(length2), 0.0f), material->shininess) : 0.0f;
+        lobe =
+            length2 > 0.0f ? power(SAHL_MAX(dot3(ns, h) / sqrt(length2), 0.0f), material->shininess) : 0.0f;
     } else if (cosine > 0.0f) {
         float3 r = ns * (2.0f * cosine) - wi;
         lobe = power(SAHL_MAX(dot3(r, wo), 0.0f), material->shininess);

@@ -1,9 +1,9 @@
 // Ray intersection with planar polygons, convex or concave, one ray against a block of four.
 //
-// The distance comes from the plane, kept to the vertices' own distances as for triangles. Inside or outside is decided by crossings of the sheared
-// vertices (the shear of triangle.h) with the half-axis y = 0, x > 0; edge functions are computed
-// as for triangles and edges of value 0 count as inside, so polygons that share edges with
-// polygons or triangles leak nothing between them.
+// The distance comes from the plane, kept to the polygon's box as for triangles. Inside or outside is decided
+// by crossings of the sheared vertices (the shear of triangle.h) with the half-axis y = 0, x > 0; edge
+// functions are computed as for triangles and edges of value 0 count as inside, so polygons that share edges
+// with polygons or triangles leak nothing between them.
 #ifndef SAHL_POLYGON_H
 #define SAHL_POLYGON_H
 
@@ -11,25 +11,26 @@
 #include "kernels/simd.h"
 #include "kernels/triangle.h"
 
-/// A vertex in the ray's shear: x, y, and its distance along kz.
-static inline float3 sheared_vertex(const global float* vertex, const RayShear* shear) {
-    float z = vertex[shear->kz] - shear->oz;
-    return (float3)(fma(z, shear->sx, vertex[shear->kx] - shear->ox), fma(z, shear->sy, vertex[shear->ky] - shear->oy),
-                    z);
+/// A vertex in the ray's shear.
+static inline float2 sheared_vertex(float3 vertex, const RayShear* shear) {
+    float z = component(vertex, shear->kz) - shear->oz;
+    return (float2)(fma(z, shear->sx, component(vertex, shear->kx) - shear->ox),
+                    fma(z, shear->sy, component(vertex, shear->ky) - shear->oy));
 }
 
-/// Whether the ray passes through the polygon or exactly through its outline; *z_low, *z_high: the
-/// range of its vertices along kz.
-static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear, float* z_low,
-                                    float* z_high) {
+/// Whether the ray passes through the polygon or exactly through its outline; *lo, *hi: its box.
+static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear,
+                                    float3* lo, float3* hi) {
     bool inside = false, on_outline = false;
-    float3 a = sheared_vertex(vertices + 3u * (count - 1u), shear);
-    *z_low = a.z;
-    *z_high = a.z;
+    float3 last = load3(vertices + 3u * (count - 1u));
+    float2 a = sheared_vertex(last, shear);
+    *lo = last;
+    *hi = last;
     for (uint i = 0; i < count; ++i) {
-        float3 b = sheared_vertex(vertices + 3u * i, shear);
-        *z_low = SAHL_MIN(*z_low, b.z);
-        *z_high = SAHL_MAX(*z_high, b.z);
+        float3 vertex = load3(vertices + 3u * i);
+        float2 b = sheared_vertex(vertex, shear);
+        *lo = min3(*lo, vertex);
+        *hi = max3(*hi, vertex);
         float edge = a.x * b.y - a.y * b.x;
         bool spans = SAHL_MIN(a.x, b.x) <= 0.0f && SAHL_MAX(a.x, b.x) >= 0.0f && SAHL_MIN(a.y, b.y) <= 0.0f &&
                      SAHL_MAX(a.y, b.y) >= 0.0f;
@@ -40,29 +41,28 @@ static inline bool polygon_contains(const global float* vertices, uint count, co
     return inside || on_outline;
 }
 
-// A plane that the ray meets at a smaller cosine gives no distance to rely on.
-#define SAHL_GRAZING_COSINE 0x1p-12f
-
-static inline void intersect_polygons(const global PolygonBlock* block, const global float* polygon_vertices, const Ray* ray,
-                               const RayShear* shear, HitState* state, bool any_hit) {
+static inline void intersect_polygons(const global PolygonBlock* block, const global float* polygon_vertices,
+                                      const Ray* ray, const RayShear* shear, const RayBoxTest* boxes,
+                                      HitState* state, bool any_hit) {
     float4 nx = vload4(0, block->normal_x), ny = vload4(0, block->normal_y), nz = vload4(0, block->normal_z);
     float4 px = vload4(0, block->x) - ray->origin.x;
     float4 py = vload4(0, block->y) - ray->origin.y;
     float4 pz = vload4(0, block->z) - ray->origin.z;
     float4 nd = nx * ray->direction.x + ny * ray->direction.y + nz * ray->direction.z;
     float4 t = (nx * px + ny * py + nz * pz) / nd;
-    uint lanes = mask4(((t >= state->t_min) & (t <= state->t)) |
-                       (fabs(nd) <= SAHL_GRAZING_COSINE * fabs(shear->dz)));
+    // How far off t may be; NaN (a ray in the plane) passes.
+    float4 doubt = 0x1p-18f * (fabs(px) + fabs(py) + fabs(pz)) / fabs(nd);
+    uint lanes = mask4(~((t < state->t_min - doubt) | (t > state->t + doubt)) &
+                       (vload4(0, block->vertex_count) != 0u));
     while (lanes != 0u) {
         uint lane = lowest_lane(lanes);
         lanes &= lanes - 1u;
         uint id = block->id[lane];
         const global float* vertices = polygon_vertices + 3u * block->first_vertex[lane];
-        float z_low, z_high;
+        float3 lo, hi;
         if ((id & SAHL_ID_MASK) != ray->exclude &&
-            polygon_contains(vertices, block->vertex_count[lane], shear, &z_low, &z_high)) {
-            float distance = keep_to_vertices(((float*)&t)[lane], z_low, z_high, shear->dz);
-            offer_hit(state, distance, 0.0f, 0.0f, id, any_hit);
+            polygon_contains(vertices, block->vertex_count[lane], shear, &lo, &hi)) {
+            offer_hit(state, keep_to_box(((float*)&t)[lane], lo, hi, boxes), 0.0f, 0.0f, id, any_hit);
         }
     }
 }

@@ -42,7 +42,8 @@ static inline ObjectRays object_rays(const global QuadricBlock* block, const Ray
     return r;
 }
 
-static inline void intersect_ellipsoids(const global QuadricBlock* block, const Ray* ray, HitState* state, bool any_hit) {
+static inline void intersect_ellipsoids(const global QuadricBlock* block, const Ray* ray, HitState* state,
+                                        bool any_hit) {
     ObjectRays r = object_rays(block, ray, 0.0f);
     float4 half_chord = sqrt((1.0f - (r.px * r.px + r.py * r.py + r.pz * r.pz)) * r.inverse_dd);
     float4 enter = r.shift - half_chord, leave = r.shift + half_chord;
@@ -50,12 +51,13 @@ static inline void intersect_ellipsoids(const global QuadricBlock* block, const 
     while (lanes != 0u) {
         uint lane = lowest_lane(lanes);
         lanes &= lanes - 1u;
-        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane], ray->exclude,
-                    any_hit);
+        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane],
+                    ray->exclude, any_hit);
     }
 }
 
-static inline void intersect_cones(const global QuadricBlock* block, const Ray* ray, HitState* state, bool any_hit) {
+static inline void intersect_cones(const global QuadricBlock* block, const Ray* ray, HitState* state,
+                                   bool any_hit) {
     ObjectRays r = object_rays(block, ray, 0.5f);
     float4 slope = vload4(0, block->slope);
     float4 w = 1.0f + slope * r.pz, wd = slope * r.dz;

@@ -9,9 +9,9 @@
 
 // Each work-item takes SAHL_RAYS_PER_ITEM neighbours one after the other: many on a CPU, where a
 // work-group costs more than a ray, one on a GPU. The host gives it.
-#define SAHL_FOR_EACH_RAY(i, count)                                                                       \
-    for (uint i = (uint)get_global_id(0) * SAHL_RAYS_PER_ITEM,                                            \
-              i##_end = SAHL_MIN(i + SAHL_RAYS_PER_ITEM, (count));                                        \
+#define SAHL_FOR_EACH_RAY(i, count)                                \
+    for (uint i = (uint)get_global_id(0) * SAHL_RAYS_PER_ITEM,     \
+              i##_end = SAHL_MIN(i + SAHL_RAYS_PER_ITEM, (count)); \
          i < i##_end; ++i)
 
 static inline float3 load_soa3(const global float* arrays, uint first, uint capacity, uint i) {
@@ -35,19 +35,22 @@ static inline Ray load_ray(const global float* rays, const global uint* ray_ids,
 }
 
 /// A vector stored as floats and what they lack.
-static inline real3 load_soa3_real(const global float* arrays, uint first, uint first_low, uint capacity, uint i) {
+static inline real3 load_soa3_real(const global float* arrays, uint first, uint first_low, uint capacity,
+                                   uint i) {
     return convert_real3(load_soa3(arrays, first, capacity, i)) +
            convert_real3(load_soa3(arrays, first_low, capacity, i));
 }
 
 /// Stores a ray that starts at `origin`, exactly, and is traced from `traced_origin`.
-static inline void store_ray(global float* rays, global uint* ray_ids, uint capacity, uint i, float3 traced_origin,
-                             real3 origin, real3 direction, uint exclude, float3 weight, uint pixel) {
+static inline void store_ray(global float* rays, global uint* ray_ids, uint capacity, uint i,
+                             float3 traced_origin, real3 origin, real3 direction, uint exclude, float3 weight,
+                             uint pixel) {
     float3 traced_direction = round3(direction);
     store_soa3(rays, SAHL_RAY_ORIGIN, capacity, i, traced_origin);
     store_soa3(rays, SAHL_RAY_ORIGIN_LOW, capacity, i, round3(origin - convert_real3(traced_origin)));
     store_soa3(rays, SAHL_RAY_DIRECTION, capacity, i, traced_direction);
-    store_soa3(rays, SAHL_RAY_DIRECTION_LOW, capacity, i, round3(direction - convert_real3(traced_direction)));
+    store_soa3(rays, SAHL_RAY_DIRECTION_LOW, capacity, i,
+               round3(direction - convert_real3(traced_direction)));
     store_soa3(rays, SAHL_RAY_WEIGHT, capacity, i, weight);
     ray_ids[(size_t)SAHL_RAY_PIXEL * capacity + i] = pixel;
     ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i] = exclude;

@@ -16,9 +16,7 @@ static inline uint4 philox4x32(uint4 counter, uint2 key) {
 }
 
 /// Uniform in [0, 1), a multiple of 2^-24.
-static inline float uniform_float(uint bits) {
-    return (float)(bits >> 8) * 0x1p-24f;
-}
+static inline float uniform_float(uint bits) { return (float)(bits >> 8) * 0x1p-24f; }
 
 // What a random number is used for.
 #define SAHL_DIMENSION_PIXEL_SCRAMBLE 0u

@@ -15,7 +15,8 @@ static inline uint shade_lights(const global DeviceLight* lights, uint light_cou
     for (uint l = 0; l < light_count; ++l) {
         float3 to_light = vector_to_light(lights + l, position);
         float distance = sqrt(dot3(to_light, to_light));
-        float3 brought = phong_light(material, ns, to_light / distance, wo) * arriving_light(lights + l, distance);
+        float3 brought =
+            phong_light(material, ns, to_light / distance, wo) * arriving_light(lights + l, distance);
         brought *= weight;
         shadow_rays += is_nonzero(brought);
         store_soa3(light, 3u * l, capacity, i, brought);
@@ -30,8 +31,8 @@ typedef struct {
     float3 kr, kt;
 } Scattering;
 
-static inline Scattering scatter(const global DeviceMaterial* material, const Surface* surface, real3 ns, real3 facing,
-                                 real3 d) {
+static inline Scattering scatter(const global DeviceMaterial* material, const Surface* surface, real3 ns,
+                                 real3 facing, real3 d) {
     Scattering s;
     s.reflected = reflected_direction(d, ns);
     s.transmitted = d;
@@ -50,12 +51,12 @@ static inline Scattering scatter(const global DeviceMaterial* material, const Su
 }
 
 kernel void shade(const global DevicePrimitive* primitives, const global float* shape_data,
-                  const global DeviceMaterial* materials, const global DeviceLight* lights, const SceneConstants scene,
-                  const global float* rays, const global uint* ray_ids, const global float* hits,
-                  const global uint* hit_primitives, global float* contributions, global uint* contribution_pixels,
-                  global float* shadow_surfaces, global float* shadow_light, global float* children,
-                  global uint* child_ids, global uint* outcomes, const uint capacity, const uint count,
-                  const uint spawn) {
+                  const global DeviceMaterial* materials, const global DeviceLight* lights,
+                  const SceneConstants scene, const global float* rays, const global uint* ray_ids,
+                  const global float* hits, const global uint* hit_primitives, global float* contributions,
+                  global uint* contribution_pixels, global float* shadow_surfaces, global float* shadow_light,
+                  global float* children, global uint* child_ids, global uint* outcomes, const uint capacity,
+                  const uint count, const uint spawn) {
     global float* transmitted_rays = children + (size_t)SAHL_RAY_FLOATS * capacity;
     global uint* transmitted_ids = child_ids + (size_t)SAHL_RAY_UINTS * capacity;
     SAHL_FOR_EACH_RAY(i, count) {
@@ -82,19 +83,21 @@ kernel void shade(const global DevicePrimitive* primitives, const global float* 
         store_soa3(contributions, 0u, capacity, i, weight * load3(material->emitted));
         store_soa3(shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i, position);
         store_soa3(shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
-        uint outcome = SAHL_OUTCOME_SHADOW_RAY * shade_lights(lights, scene.light_count, material, position, round3(ns),
-                                                              round3(-d), weight, shadow_light, capacity, i);
+        uint outcome =
+            SAHL_OUTCOME_SHADOW_RAY * shade_lights(lights, scene.light_count, material, position, round3(ns),
+                                                   round3(-d), weight, shadow_light, capacity, i);
         if (spawn) {
             const Scattering s = scatter(material, &surface, ns, facing, d);
             if (is_nonzero(s.kr)) {
-                store_ray(children, child_ids, capacity, i, offset_origin(position, offset, round3(s.reflected)),
-                          surface.position, s.reflected, primitive, weight * s.kr, pixel);
+                store_ray(children, child_ids, capacity, i,
+                          offset_origin(position, offset, round3(s.reflected)), surface.position, s.reflected,
+                          primitive, weight * s.kr, pixel);
                 outcome |= SAHL_OUTCOME_REFLECTED;
             }
             if (is_nonzero(s.kt)) {
                 store_ray(transmitted_rays, transmitted_ids, capacity, i,
-                          offset_origin(position, offset, round3(s.transmitted)), surface.position, s.transmitted,
-                          primitive, weight * s.kt, pixel);
+                          offset_origin(position, offset, round3(s.transmitted)), surface.position,
+                          s.transmitted, primitive, weight * s.kt, pixel);
                 outcome |= SAHL_OUTCOME_TRANSMITTED;
             }
         }

@@ -9,7 +9,7 @@
 /// The part of the light that comes through along `ray` up to t_max: 0 behind an opaque surface,
 /// else the product of the transmissions of the surfaces in between, each crossing once, in order.
 static inline float3 transmittance(const Bvh* bvh, const global DevicePrimitive* primitives,
-                            const global DeviceMaterial* materials, const Ray* ray, float t_max) {
+                                   const global DeviceMaterial* materials, const Ray* ray, float t_max) {
     uint occlusion = any_hit(bvh, ray, t_max);
     if (occlusion != SAHL_HIT_TRANSPARENT) {
         return (float3)(occlusion == SAHL_HIT_NOTHING ? 1.0f : 0.0f);
@@ -23,11 +23,13 @@ static inline float3 transmittance(const Bvh* bvh, const global DevicePrimitive*
     return through;
 }
 
-kernel void shadow(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                   const global DevicePrimitive* primitives, const global DeviceMaterial* materials,
-                   const global DeviceLight* lights, const SceneConstants scene, const global uint* hit_primitives,
-                   const global float* shadow_surfaces, const global float* shadow_light, const global uint* outcomes,
-                   global float* contributions, const uint capacity, const uint count) {
+kernel void shadow(const global BvhNode* nodes, const global uchar* leaves,
+                   const global float* polygon_vertices, const global DevicePrimitive* primitives,
+                   const global DeviceMaterial* materials, const global DeviceLight* lights,
+                   const SceneConstants scene, const global uint* hit_primitives,
+                   const global float* shadow_surfaces, const global float* shadow_light,
+                   const global uint* outcomes, global float* contributions, const uint capacity,
+                   const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, scene.extent};
     SAHL_FOR_EACH_RAY(i, count) {
         if (outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {

@@ -23,12 +23,8 @@ static inline uint mask16_ge(float16 a, float16 b) {
 
 #elif defined(__AVX2__) && !defined(SAHL_PLAIN_OPENCL)
 
-static inline uint sign_bits8(int8 lanes) {
-    return (uint)__builtin_ia32_movmskps256(as_float8(lanes));
-}
-static inline uint mask8_le(float8 a, float8 b) {
-    return sign_bits8(a <= b);
-}
+static inline uint sign_bits8(int8 lanes) { return (uint)__builtin_ia32_movmskps256(as_float8(lanes)); }
+static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
 static inline uint mask16_le(float16 a, float16 b) {
     return sign_bits8(a.lo <= b.lo) | sign_bits8(a.hi <= b.hi) << 8;
 }
@@ -44,9 +40,7 @@ static inline uint sign_bits8(int8 lanes) {
     int2 half_of_it = quarter.lo | quarter.hi;
     return (uint)(half_of_it.x | half_of_it.y);
 }
-static inline uint mask8_le(float8 a, float8 b) {
-    return sign_bits8(a <= b);
-}
+static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
 static inline uint mask16_le(float16 a, float16 b) {
     return sign_bits8(a.lo <= b.lo) | sign_bits8(a.hi <= b.hi) << 8;
 }
@@ -63,14 +57,10 @@ static inline uint mask4(int4 lanes) {
 }
 
 /// The lowest set bit's number; `mask` is not 0.
-static inline uint lowest_lane(uint mask) {
-    return 31u - clz(mask & (0u - mask));
-}
+static inline uint lowest_lane(uint mask) { return 31u - clz(mask & (0u - mask)); }
 
 /// The highest set bit's number; `mask` is not 0.
-static inline uint highest_lane(uint mask) {
-    return 31u - clz(mask);
-}
+static inline uint highest_lane(uint mask) { return 31u - clz(mask); }
 
 /// Moves bit s of an 8-bit mask to bit s ^ octant.
 static inline uint permute_by_octant(uint mask, uint octant) {

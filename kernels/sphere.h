@@ -9,7 +9,8 @@
 #include "kernels/hit.h"
 #include "kernels/simd.h"
 
-static inline void intersect_spheres(const global SphereBlock* block, const Ray* ray, HitState* state, bool any_hit) {
+static inline void intersect_spheres(const global SphereBlock* block, const Ray* ray, HitState* state,
+                                     bool any_hit) {
     float3 d = ray->direction;
     float inverse_dd = 1.0f / dot3(d, d);
     float4 cx = vload4(0, block->x) - ray->origin.x;
@@ -25,8 +26,8 @@ static inline void intersect_spheres(const global SphereBlock* block, const Ray*
     while (lanes != 0u) {
         uint lane = lowest_lane(lanes);
         lanes &= lanes - 1u;
-        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane], ray->exclude,
-                    any_hit);
+        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane],
+                    ray->exclude, any_hit);
     }
 }
 

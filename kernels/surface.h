@@ -7,8 +7,8 @@
 
 typedef struct {
     real3 position;
-    real3 ng;  // unit geometric normal, outward or by the winding
-    real3 ns;  // unit shading normal, on ng's side
+    real3 ng;      // unit geometric normal, outward or by the winding
+    real3 ns;      // unit shading normal, on ng's side
     float offset;  // how far off the surface along ng rays start
     uint material;
 } Surface;
@@ -27,7 +27,8 @@ static inline float3 offset_origin(float3 position, float3 offset, float3 direct
 }
 
 static inline real3 object_vector(const global float* m, real3 v) {
-    return (real3)(dot3_real(load3_real(m), v), dot3_real(load3_real(m + 6), v), dot3_real(load3_real(m + 12), v));
+    return (real3)(dot3_real(load3_real(m), v), dot3_real(load3_real(m + 6), v),
+                   dot3_real(load3_real(m + 12), v));
 }
 
 /// A normal of object space in the world: times the transpose of object-from-world.
@@ -50,13 +51,14 @@ static inline Surface flat_surface(real3 origin, real3 direction, real3 normal, 
     return s;
 }
 
-static inline Surface triangle_surface(const global float* data, bool smooth, real3 origin, real3 direction, float u,
-                                       float v) {
+static inline Surface triangle_surface(const global float* data, bool smooth, real3 origin, real3 direction,
+                                       float u, float v) {
     float3 a = load3(data), b = load3(data + 3), c = load3(data + 6);
     real3 v0 = convert_real3(a), v1 = convert_real3(b), v2 = convert_real3(c);
     Surface s = flat_surface(origin, direction, normalize3_real(cross3_real(v1 - v0, v2 - v0)), v0);
     if (smooth) {
-        real3 n = convert_real3(load3(data + 9) * (1.0f - u - v) + load3(data + 12) * u + load3(data + 15) * v);
+        real3 n =
+            convert_real3(load3(data + 9) * (1.0f - u - v) + load3(data + 12) * u + load3(data + 15) * v);
         real length2 = dot3_real(n, n);
         s.ns = length2 > (real)0 ? n / sqrt(length2) : s.ng;
     }
@@ -66,12 +68,13 @@ static inline Surface triangle_surface(const global float* data, bool smooth, re
 
 /// The crossing nearest `hit` of the ray with the unit sphere of an object space, or with
 /// x² + y² = (1 + slope z)² for cones. `p`, `d`: hit less the object's origin and direction there.
-static inline Surface quadric_surface(real3 hit, real3 direction, const global float* m, real3 p, real3 d, bool cone,
-                                      real slope) {
+static inline Surface quadric_surface(real3 hit, real3 direction, const global float* m, real3 p, real3 d,
+                                      bool cone, real slope) {
     real w = cone ? (real)1 + slope * p.z : (real)1, wd = cone ? slope * d.z : (real)0;
     real pz = cone ? (real)0 : p.z, dz = cone ? (real)0 : d.z;
-    real step = root_near_zero(d.x * d.x + d.y * d.y + dz * dz - wd * wd, p.x * d.x + p.y * d.y + pz * dz - w * wd,
-                               p.x * p.x + p.y * p.y + pz * pz - w * w);
+    real step =
+        root_near_zero(d.x * d.x + d.y * d.y + dz * dz - wd * wd, p.x * d.x + p.y * d.y + pz * dz - w * wd,
+                       p.x * p.x + p.y * p.y + pz * pz - w * w);
     Surface s;
     s.position = hit + direction * step;
     p += d * step;

@@ -15,17 +15,17 @@
 #include "kernels/sphere.h"
 #include "kernels/triangle.h"
 
-// A hit's distance may be too short by its own rounding; boxes are culled only beyond this much
-// more, and the boxes' addends (bvh.h) leave room for the rest.
+// A curved surface's distance may be too short by its own rounding: boxes are culled only beyond
+// this much more, and their addends (bvh.h) leave room for the rest.
 #define SAHL_CULL_SLACK (1.0f + 0x1p-20f)
 
-static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear, HitState* state,
-                           bool any_hit) {
+static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
+                                  const RayBoxTest* boxes, HitState* state, bool any_hit) {
     ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
     const global uchar* block = bvh->leaves + offset;
     switch (child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK) {
         case SAHL_KIND_TRIANGLE:
-            intersect_triangles((const global TriangleBlock*)block, ray, shear, state, any_hit);
+            intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
             break;
         case SAHL_KIND_SPHERE:
             intersect_spheres((const global SphereBlock*)block, ray, state, any_hit);
@@ -37,7 +37,8 @@ static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, co
             intersect_cones((const global QuadricBlock*)block, ray, state, any_hit);
             break;
         case SAHL_KIND_POLYGON:
-            intersect_polygons((const global PolygonBlock*)block, bvh->polygon_vertices, ray, shear, state, any_hit);
+            intersect_polygons((const global PolygonBlock*)block, bvh->polygon_vertices, ray, shear, boxes,
+                               state, any_hit);
             break;
     }
 }
@@ -51,7 +52,7 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
         !isfinite(dot3(ray->origin, (float3)(1.0f)))) {
         return;
     }
-    const RayBoxTest test = ray_box_test(ray->origin, ray->direction, bvh->extent);
+    const RayBoxTest boxes = ray_box_test(ray->origin, ray->direction, bvh->extent);
     const RayShear shear = ray_shear(ray->origin, ray->direction);
     uint waiting[SAHL_STACK_SIZE];
     float entries[SAHL_STACK_SIZE];
@@ -60,7 +61,7 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
     float cull_t = state->t * SAHL_CULL_SLACK;
     for (;;) {
         if (current & SAHL_CHILD_LEAF) {
-            intersect_leaf(bvh, current, ray, &shear, state, any_hit);
+            intersect_leaf(bvh, current, ray, &shear, &boxes, state, any_hit);
             if (any_hit && (state->occlusion & SAHL_HIT_OPAQUE)) {
                 return;
             }
@@ -68,12 +69,12 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
         } else {
             const global BvhNode* node = bvh->nodes + current;
             float8 entry;
-            uint hit = intersect_children(node, &test, state->t_min, cull_t, &entry);
-            uint order = permute_by_octant(hit, test.octant);
+            uint hit = intersect_children(node, &boxes, state->t_min, cull_t, &entry);
+            uint order = permute_by_octant(hit, boxes.octant);
             while (order != 0u) {
                 uint position = highest_lane(order);
                 order ^= 1u << position;
-                uint slot = position ^ test.octant;
+                uint slot = position ^ boxes.octant;
                 waiting[size] = node->child[slot];
                 entries[size] = ((float*)&entry)[slot];
                 ++size;

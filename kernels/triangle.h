@@ -5,25 +5,23 @@
 // contraction each edge function is right or zero, never of the wrong sign, so that tests which
 // include zero leak nothing and need no double precision. The extent test rejects collinear
 // triangles, which would be hit far along their line.
-// The interpolated distance is poor on slivers; t comes from the plane instead, kept to the range
-// of the vertices' own distances, which it leaves when the ray lies (nearly) in the plane.
+// The interpolated distance is poor on slivers; t comes from the plane instead, kept to the
+// triangle's own box, which it leaves when the ray lies (nearly) in the plane.
 #ifndef SAHL_TRIANGLE_H
 #define SAHL_TRIANGLE_H
 
+#include "kernels/bvh.h"
 #include "kernels/hit.h"
 #include "kernels/simd.h"
 
 /// The shear that a ray applies to vertices: axis k.z is the largest of |direction| (ties x, y, z).
 typedef struct {
-    uint kx, ky, kz;     // axes
-    float ox, oy, oz;    // origin along them
-    float sx, sy;        // minus the shear factors
-    float dz;            // direction along kz
+    uint kx, ky, kz;   // axes
+    float ox, oy, oz;  // origin along them
+    float sx, sy;      // minus the shear factors
 } RayShear;
 
-static inline float component(float3 v, uint axis) {
-    return axis == 0u ? v.x : (axis == 1u ? v.y : v.z);
-}
+static inline float component(float3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y : v.z); }
 
 static inline RayShear ray_shear(float3 origin, float3 direction) {
     float3 a = fabs(direction);
@@ -34,19 +32,10 @@ static inline RayShear ray_shear(float3 origin, float3 direction) {
     shear.ox = component(origin, shear.kx);
     shear.oy = component(origin, shear.ky);
     shear.oz = component(origin, shear.kz);
-    shear.dz = component(direction, shear.kz);
-    shear.sx = -(component(direction, shear.kx) / shear.dz);
-    shear.sy = -(component(direction, shear.ky) / shear.dz);
+    float dz = component(direction, shear.kz);
+    shear.sx = -(component(direction, shear.kx) / dz);
+    shear.sy = -(component(direction, shear.ky) / dz);
     return shear;
-}
-
-/// `t` within the distances of vertices that lie between z_low and z_high along kz; NaN becomes the
-/// nearest of them.
-static inline float keep_to_vertices(float t, float z_low, float z_high, float dz) {
-    float a = z_low / dz, b = z_high / dz;
-    float nearest = SAHL_MIN(a, b), farthest = SAHL_MAX(a, b);
-    t = t > nearest ? t : nearest;
-    return t < farthest ? t : farthest;
 }
 
 /// Distance to the plane of a triangle. The normal comes from raw vertex differences, compensated,
@@ -56,8 +45,9 @@ static inline float triangle_distance(float3 v0, float3 v1, float3 v2, float3 or
     return dot3(normal, v0 - origin) / dot3(normal, direction);
 }
 
-static inline void intersect_triangles(const global TriangleBlock* block, const Ray* ray, const RayShear* shear,
-                                HitState* state, bool any_hit) {
+static inline void intersect_triangles(const global TriangleBlock* block, const Ray* ray,
+                                       const RayShear* shear, const RayBoxTest* boxes, HitState* state,
+                                       bool any_hit) {
     const global float* axes = (const global float*)block;
     float16 z = vload16(shear->kz, axes) - shear->oz;
     float16 x = fma(z, (float16)(shear->sx), vload16(shear->kx, axes) - shear->ox);
@@ -67,7 +57,8 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
     float16 edges = x.s456789ab0123cdef * y - y.s456789ab0123cdef * x;
     uint positive = mask16_ge(edges, (float16)(0.0f));
     uint negative = mask16_le(edges, (float16)(0.0f));
-    uint lanes = ((positive & positive >> 4 & positive >> 8) | (negative & negative >> 4 & negative >> 8)) & 15u;
+    uint lanes =
+        ((positive & positive >> 4 & positive >> 8) | (negative & negative >> 4 & negative >> 8)) & 15u;
     if (lanes == 0u) {
         return;
     }
@@ -89,9 +80,8 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
         float3 v0 = (float3)(block->x[lane], block->y[lane], block->z[lane]);
         float3 v1 = (float3)(block->x[4 + lane], block->y[4 + lane], block->z[4 + lane]);
         float3 v2 = (float3)(block->x[8 + lane], block->y[8 + lane], block->z[8 + lane]);
-        float z0 = ((float*)&z)[lane], z1 = ((float*)&z)[4 + lane], z2 = ((float*)&z)[8 + lane];
-        float t = keep_to_vertices(triangle_distance(v0, v1, v2, ray->origin, ray->direction),
-                                   SAHL_MIN(SAHL_MIN(z0, z1), z2), SAHL_MAX(SAHL_MAX(z0, z1), z2), shear->dz);
+        float t = keep_to_box(triangle_distance(v0, v1, v2, ray->origin, ray->direction),
+                              min3(min3(v0, v1), v2), max3(max3(v0, v1), v2), boxes);
         float scale = 1.0f / ((float*)&determinant)[lane];
         offer_hit(state, t, ((float*)&v)[lane] * scale, ((float*)&w)[lane] * scale, id, any_hit);
     }

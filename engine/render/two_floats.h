@@ -10,9 +10,7 @@ struct TwoFloats {
 };
 
 inline TwoFloats split(double value) {
-    // GCC 12 vectorises neighbouring splits and then takes (double)(float)x for x, which leaves
-    // every low part 0. It may not do that through a volatile.
-    volatile float high = static_cast<float>(value);
+    const auto high = static_cast<float>(value);
     return {high, static_cast<float>(value - static_cast<double>(high))};
 }
 
