@@ -27,9 +27,9 @@ const std::vector<Place> kPlaces{{1, 0}, {1e-3, 0}, {1e3, 0}, {1, 1e3}, {1e-3, 1
 
 struct Score {
     int rays = 0, sure = 0, hits = 0;
-    int wrong = 0;    ///< another primitive than the oracle's, or none, or one where there is none
-    int wrong_t = 0;  ///< the right primitive at a wrong distance
-    int beside = 0;   ///< a hit that is not at its primitive (a ray in a flat one's plane has some choice)
+    int wrong = 0;        ///< another primitive than the oracle's, or none, or one where there is none
+    int wrong_t = 0;      ///< the right primitive at a wrong distance
+    int beside = 0;       ///< a hit that is not at its primitive (for flat ones: in its box)
     double position = 0;  ///< largest error of surface_at(), of what single precision would have
     double ng = 0, ns = 0;
 };
@@ -75,7 +75,7 @@ void compare(RayTracer& tracer, ShapeKind kind, Random& random, const Place& pla
             const dvec3 position =
                 dvec3(rays[i].origin) + static_cast<double>(hit.t) * dvec3(rays[i].direction);
             score.beside += glm::distance(position, target.center) >
-                            (target.flat ? 4 : 1.001) * target.size + 2 * verdict.rounding;
+                            (target.flat ? 1.74 : 1.001) * target.size + 2 * verdict.rounding;
         }
         if (!verdict.sure) continue;
         ++score.sure;

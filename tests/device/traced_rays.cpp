@@ -10,14 +10,17 @@ constexpr const char* kKernels = R"(
 #include "kernels/surface.h"
 
 kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices, const global uint* children,
-                        const uint child_count, const global float* rays, const global uint* ray_ids,
+                        const uint child_count, const float extent, const global float* rays, const global uint* ray_ids,
                         global float* hits, global uint* hit_primitives, const uint count) {
-    const Bvh bvh = {0, leaves, polygon_vertices, 0.0f};
+    const Bvh bvh = {0, leaves, polygon_vertices, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         RayShear shear = ray_shear(ray.origin, ray.direction);
         HitState state = hit_state(0.0f, INFINITY);
-        for (uint k = 0; k < child_count; ++k) { intersect_leaf(&bvh, children[k], &ray, &shear, &state, false); }
+        RayBoxTest boxes = ray_box_test(ray.origin, ray.direction, extent);
+        for (uint k = 0; k < child_count; ++k) {
+            intersect_leaf(&bvh, children[k], &ray, &shear, &boxes, &state, false);
+        }
         store_soa3(hits, SAHL_HIT_T, count, i, (float3)(state.t, state.u, state.v));
         hit_primitives[i] = state.primitive;
     }
@@ -145,17 +148,17 @@ std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vecto
     Batch batch = upload(rays);
     const std::vector<std::uint32_t> children = leaf_children(scene);
     runner_.run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, runner_.upload(children),
-                static_cast<std::uint32_t>(children.size()), batch.rays, batch.ids, batch.hits,
-                batch.primitives);
+                static_cast<std::uint32_t>(children.size()), scene.constants.extent, batch.rays, batch.ids,
+                batch.hits, batch.primitives);
     return download(batch);
 }
 
-std::vector<std::uint32_t> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
-                                                float t_max) {
+std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                            float t_max) {
     Batch batch = upload(rays);
     runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
                 scene.constants.extent, batch.rays, batch.ids, t_max, batch.primitives);
-    return KernelRunner::download<std::uint32_t>(batch.primitives, batch.count);
+    return KernelRunner::download<Occlusion>(batch.primitives, batch.count);
 }
 
 std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vector<TestRay>& rays,

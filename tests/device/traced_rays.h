@@ -34,6 +34,9 @@ struct TestSurface {
     float offset;
 };
 
+/// What a shadow ray meets: SAHL_HIT_* of kernels/hit.h.
+enum class Occlusion : std::uint32_t { nothing = 0, transparent = 1, opaque = 2 };
+
 /// The crossings of a ray in order, by closest_hit() and hit_state_behind().
 struct TestWalk {
     static constexpr std::uint32_t longest = 30;
@@ -50,13 +53,15 @@ public:
     Device& device() { return runner_.device(); }
     DeviceScene upload(const Scene& scene) { return make_device_scene(runner_.device(), scene); }
 
+    /// Nodes to put in the place of a scene's own.
+    Buffer upload_nodes(const std::vector<device::BvhNode>& nodes) { return runner_.upload(nodes); }
+
     /// Closest hits by kernels/intersect.cl.
     std::vector<TestHit> intersect(const DeviceScene& scene, const std::vector<TestRay>& rays);
     /// Closest hits by offering each ray all blocks of all leaves, without the tree.
     std::vector<TestHit> brute_force(DeviceScene& scene, const std::vector<TestRay>& rays);
-    /// SAHL_HIT_* of any_hit() up to `t_max`.
-    std::vector<std::uint32_t> occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
-                                         float t_max);
+    /// any_hit() up to `t_max`.
+    std::vector<Occlusion> occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays, float t_max);
     std::vector<TestWalk> walk(const DeviceScene& scene, const std::vector<TestRay>& rays, float t_max);
     /// Of hits; the others' surfaces mean nothing.
     std::vector<TestSurface> surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
