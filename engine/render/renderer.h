@@ -26,7 +26,7 @@ struct RenderSettings {
     std::uint64_t seed = 0;
     std::optional<Crop> crop;  ///< none: the whole image
     /// Rays of a batch. Does not change the image: what does not fit waits.
-    std::uint32_t ray_budget = 1u << 17;
+    std::uint32_t ray_budget = 1u << 15;
 };
 
 /// Rays that were traced in one bounce generation, over all waves.
