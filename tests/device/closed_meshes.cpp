@@ -147,7 +147,7 @@ ClosedMesh zigzag_cube(Random& random, double half, const dvec3& center) {
         constexpr int teeth = 12;
         for (int i = 0; i <= teeth; ++i) {
             const double along = 2.0 * i / teeth - 1;
-            const double across = i == 0 || i == teeth ? 0 : (i % 2 ? 1 : -1) * uniform(random, 0.05, 0.2);
+            const double across = i == 0 || i == teeth ? 0 : (i % 2 ? 1 : -1) * uniform(random, 0.05, 0.15);
             path.push_back(point(along + across, along - across));
         }
         std::vector<std::uint32_t> below = path, above(path.rbegin(), path.rend());

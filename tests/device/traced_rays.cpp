@@ -7,7 +7,8 @@ namespace {
 
 constexpr const char* kKernels = R"(
 #include "kernels/intersect.cl"
-#include "kernels/surface.h"
+#include "kernels/shade.cl"
+#include "kernels/shadow.cl"
 
 kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices, const global uint* children,
                         const uint child_count, const float extent, const global float* rays, const global uint* ray_ids,
@@ -121,7 +122,22 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays) {
             floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count + i] = rays[i].origin[k];
             floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count + i] = rays[i].direction[k];
         }
+        for (std::size_t k = 0; k < 3; ++k) floats[(SAHL_RAY_WEIGHT + k) * count + i] = 1;
         ids[SAHL_RAY_EXCLUDE * count + i] = rays[i].exclude;
+    }
+    return batch;
+}
+
+RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, const std::vector<TestHit>& hits) {
+    Batch batch = upload(rays);
+    const std::size_t count = batch.count;
+    const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * count);
+    const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::write, count);
+    for (std::size_t i = 0; i < count; ++i) {
+        floats[i] = hits[i].t;
+        floats[count + i] = hits[i].u;
+        floats[2 * count + i] = hits[i].v;
+        primitives[i] = hits[i].primitive;
     }
     return batch;
 }
@@ -172,18 +188,7 @@ std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vecto
 
 std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                              const std::vector<TestHit>& hits) {
-    Batch batch = upload(rays);
-    {
-        const std::size_t count = batch.count;
-        const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * count);
-        const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::write, count);
-        for (std::size_t i = 0; i < count; ++i) {
-            floats[i] = hits[i].t;
-            floats[count + i] = hits[i].u;
-            floats[2 * count + i] = hits[i].v;
-            primitives[i] = hits[i].primitive;
-        }
-    }
+    Batch batch = upload(rays, hits);
     constexpr std::size_t kFloats = 19;
     Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
     runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, batch.rays, batch.hits,
@@ -193,6 +198,54 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
     for (std::size_t i = 0; i < batch.count; ++i) {
         const float* p = &parts[kFloats * i];
         result.push_back({sum_of_parts(p), sum_of_parts(p + 6), sum_of_parts(p + 12), p[18]});
+    }
+    return result;
+}
+
+std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                        const std::vector<TestHit>& hits) {
+    Batch batch = upload(rays, hits);
+    const std::size_t count = batch.count;
+    const std::size_t lights = scene.constants.light_count;
+    const auto buffer = [&](std::size_t arrays) { return Buffer(device(), arrays * count * 4, "shading"); };
+    Buffer light = buffer(3), pixels = buffer(1), surfaces = buffer(SAHL_SURFACE_FLOATS),
+           brought = buffer(3 * lights);
+    Buffer children = buffer(std::size_t{2} * SAHL_RAY_FLOATS),
+           child_ids = buffer(std::size_t{2} * SAHL_RAY_UINTS);
+    Buffer outcomes = buffer(1);
+    // run() adds the count, which as shade's last parameter says: do spawn.
+    runner_.run("shade", count, scene.primitives, scene.shape_data, scene.materials, scene.lights,
+                scene.constants, batch.rays, batch.ids, batch.hits, batch.primitives, light, pixels, surfaces,
+                brought, children, child_ids, outcomes, batch.count, batch.count);
+    runner_.run("shadow", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.primitives,
+                scene.materials, scene.lights, scene.constants, batch.primitives, surfaces, brought, outcomes,
+                light, batch.count);
+
+    const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * count);
+    const auto ids = child_ids.map<std::uint32_t>(MapMode::read, std::size_t{2} * SAHL_RAY_UINTS * count);
+    const auto outcome = outcomes.map<std::uint32_t>(MapMode::read, count);
+    const auto arrived = light.map<float>(MapMode::read, count);
+    const auto unshadowed = brought.map<float>(MapMode::read, 3 * lights * count);
+    const auto child = [&](std::size_t which, std::size_t i) {
+        TestRay ray;
+        const float* floats = rays_out.data() + which * SAHL_RAY_FLOATS * count + i;
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count];
+            ray.direction[k] = floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count];
+        }
+        ray.exclude = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_EXCLUDE) * count + i];
+        return ray;
+    };
+    std::vector<TestSpawn> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!hits[i].hit()) continue;
+        result[i] = {(outcome[i] & SAHL_OUTCOME_REFLECTED) != 0,
+                     (outcome[i] & SAHL_OUTCOME_TRANSMITTED) != 0,
+                     child(0, i),
+                     child(1, i),
+                     0,
+                     arrived[i]};
+        for (std::size_t l = 0; l < lights; ++l) result[i].unshadowed += unshadowed[3 * l * count + i];
     }
     return result;
 }

@@ -45,6 +45,14 @@ struct TestWalk {
     float t[longest] = {};
 };
 
+/// What kernels/shade.cl makes of a hit.
+struct TestSpawn {
+    bool reflects = false, transmits = false;
+    TestRay reflected, transmitted;
+    float unshadowed = 0;  ///< light of all lamps as if nothing were in between, first channel
+    float arrived = 0;     ///< what kernels/shadow.cl left of it
+};
+
 /// Traces batches of rays on the default device.
 class RayTracer {
 public:
@@ -67,12 +75,18 @@ public:
     std::vector<TestSurface> surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                       const std::vector<TestHit>& hits);
 
+    /// Children and light of hits by kernels/shade.cl and shadow.cl; nothing for rays that miss. Directions
+    /// have to be unit vectors, emission black.
+    std::vector<TestSpawn> shade(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                 const std::vector<TestHit>& hits);
+
 private:
     struct Batch {
         Buffer rays, ids, hits, primitives;
         std::uint32_t count;
     };
     Batch upload(const std::vector<TestRay>& rays);
+    Batch upload(const std::vector<TestRay>& rays, const std::vector<TestHit>& hits);
     std::vector<TestHit> download(Batch& batch);
 
     KernelRunner runner_;
