@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "tests/device/soups.h"
@@ -171,6 +172,43 @@ TEST_CASE("shadow rays tell opaque from transparent, and do not look beyond thei
     CHECK((met({glass}, 0.5F) == Occlusion::nothing));
     CHECK((met({opaque, glass, glass}, 0.75F, 0) == Occlusion::nothing));
     CHECK((met({opaque, glass, glass}, kInfinity, 0) == Occlusion::transparent));
+}
+
+TEST_CASE("triangles without area are not hit beside where they are") {
+    RayTracer tracer;
+    Random random(15);
+    Scene scene;
+    // Needles along lines in general and axis-parallel position, in all orders of their corners, and points.
+    for (int i = 0; i < 24; ++i) {
+        const vec3 a(in_ball(random)), d = i % 3 == 0 ? vec3(0, 0, 0.5F) : vec3(unit_vector(random));
+        const vec3 b = a + d, c = i % 2 == 0 ? a + 0.5F * d : a;
+        oracle::add_triangle(scene, i % 4 < 2 ? std::vector{a, b, c} : std::vector{c, a, b}, {});
+        oracle::add_triangle(scene, {a, a, a}, {});
+    }
+    std::vector<TestRay> rays;
+    for (int i = 0; i < 100'000; ++i) {
+        // At points of the needles' lines, on them or past their ends.
+        const Triangle& triangle = scene.triangles[static_cast<std::size_t>(i) % scene.triangles.size()];
+        const vec3 a = scene.vertices[triangle.vertices[0]], b = scene.vertices[triangle.vertices[1]];
+        const vec3 aim = a + static_cast<float>(uniform(random, -3, 4)) * (b - a);
+        const vec3 origin = i % 5 == 0 ? aim + 2.0F * (b - a) : vec3(5.0 * unit_vector(random));
+        rays.push_back({origin, aim - origin});
+    }
+    const std::vector<TestHit> hits = tracer.intersect(tracer.upload(scene), rays);
+    int met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i].hit()) continue;
+        ++met;
+        REQUIRE(std::isfinite(hits[i].t));
+        const dvec3 at = dvec3(rays[i].origin) + static_cast<double>(hits[i].t) * dvec3(rays[i].direction);
+        dvec3 lo(1e9), hi(-1e9);
+        for (const std::uint32_t vertex : scene.triangles[hits[i].primitive].vertices) {
+            lo = glm::min(lo, dvec3(scene.vertices[vertex]));
+            hi = glm::max(hi, dvec3(scene.vertices[vertex]));
+        }
+        for (int k = 0; k < 3; ++k) REQUIRE((at[k] > lo[k] - 1e-5 && at[k] < hi[k] + 1e-5));
+    }
+    CHECK(met < 50'000);
 }
 
 }  // namespace sahl::tests

@@ -67,7 +67,8 @@ TEST_CASE("power, log2 and exp2 are within their stated errors over their domain
                             : i % 4 == 2 ? std::exp2(-100 * u)
                                          : 1 + std::exp2(-23 * u);
         x.push_back(static_cast<float>(base));
-        const double limit = x.back() > 1 ? std::min(127 / std::log2(static_cast<double>(x.back())), 1e5) : 1e5;
+        const double limit =
+            x.back() > 1 ? std::min(127 / std::log2(static_cast<double>(x.back())), 1e5) : 1e5;
         n.push_back(static_cast<float>(limit * 0.9999 * std::pow(unit(random), 6)));
     }
     const std::vector<Powers> got = run_powers(x, n);
