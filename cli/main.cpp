@@ -177,7 +177,8 @@ int guarded_run(int argc, char** argv) {
 }  // namespace sahl::cli
 
 int main(int argc, char** argv) {
-    // A reader that went away is a failed write with a message, not a silent death.
+    // A reader that went away and a file size limit are failed writes with a message, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     return sahl::cli::guarded_run(argc, argv);
 }

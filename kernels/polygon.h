@@ -50,8 +50,10 @@ static inline void intersect_polygons(const global PolygonBlock* block, const gl
     float4 pz = vload4(0, block->z) - ray->origin.z;
     float4 nd = nx * ray->direction.x + ny * ray->direction.y + nz * ray->direction.z;
     float4 t = (nx * px + ny * py + nz * pz) / nd;
-    // How far off t may be; NaN (a ray in the plane) passes.
-    float4 doubt = 0x1p-18f * (fabs(px) + fabs(py) + fabs(pz)) / fabs(nd);
+    // How far off t may be, by the rounding of the vertices' own coordinates too; NaN (a ray in the
+    // plane) passes.
+    float origin_sum = fabs(ray->origin.x) + fabs(ray->origin.y) + fabs(ray->origin.z);
+    float4 doubt = 0x1p-20f * (fabs(px) + fabs(py) + fabs(pz) + origin_sum) / fabs(nd);
     uint lanes = mask4(~((t < state->t_min - doubt) | (t > state->t + doubt)) &
                        (vload4(0, block->vertex_count) != 0u));
     while (lanes != 0u) {

@@ -1,12 +1,9 @@
 #include "tests/cli/sahl_program.h"
 
-#include <stdlib.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <system_error>
 
 namespace sahl::tests {
 
@@ -19,17 +16,6 @@ std::string environment(const char* name) {
 }
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sahl-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
 
 ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options) {
     std::vector<std::string> command{environment("SAHL_BINARY")};

@@ -8,22 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sahl::tests {
-
-/// An empty folder that goes, with what is in it, at the end of the test.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// Runs the program that the environment variable SAHL_BINARY names.
 ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options = {});

@@ -1,7 +1,7 @@
 // What the tests of engine/device share.
 #pragma once
 
-#include <stdlib.h>  // NOLINT: setenv, mkdtemp
+#include <stdlib.h>  // NOLINT: setenv
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -11,29 +11,9 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace sahl::tests {
-
-/// A folder that is gone with its contents at the end of the scope.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "sahl-test-XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// An environment variable that has its old value again at the end of the scope.
 class ScopedVariable {

@@ -10,7 +10,8 @@
 #include <cstdio>
 
 #include "engine/core/error.h"
-#include "tests/host/film/temporary_folder.h"
+#include "tests/host/film/output_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace fs = std::filesystem;
 
@@ -20,7 +21,7 @@ namespace {
 using tests::film::content_of;
 using tests::film::NoPrivileges;
 using tests::film::put;
-using tests::film::TemporaryFolder;
+using tests::TemporaryFolder;
 
 void write(const fs::path& path, const std::string& content) {
     write_file(path, std::as_bytes(std::span(content)));

@@ -11,7 +11,8 @@
 #include <limits>
 
 #include "engine/core/error.h"
-#include "tests/host/film/temporary_folder.h"
+#include "tests/host/film/output_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace fs = std::filesystem;
 
@@ -21,7 +22,7 @@ namespace {
 using tests::film::content_of;
 using tests::film::NoPrivileges;
 using tests::film::put;
-using tests::film::TemporaryFolder;
+using tests::TemporaryFolder;
 
 /// A smooth picture of odd size with values from 0 to 1, higher than one band of rows.
 Image gradient(int width = 37, int height = 300) {

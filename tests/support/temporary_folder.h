@@ -1,18 +1,16 @@
-// What tests of output need: a folder to fill, files, and the rights of an ordinary user.
+// A folder for a test to fill.
 #pragma once
 
 #include <stdlib.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 
-namespace sahl::tests::film {
+namespace sahl::tests {
 
-/// Gone with all in it at the end.
+/// An empty folder that goes, with what is in it, at the end of the test.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
@@ -40,27 +38,4 @@ private:
     std::filesystem::path path_;
 };
 
-/// The rights of a user who is not root, while it lives.
-class NoPrivileges {
-public:
-    NoPrivileges() {
-        if (user_ == 0 && ::seteuid(65534) != 0) throw std::runtime_error("seteuid failed");
-    }
-    ~NoPrivileges() {
-        if (::seteuid(user_) != 0) std::abort();
-    }
-
-private:
-    uid_t user_ = ::geteuid();
-};
-
-inline std::string content_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-inline void put(const std::filesystem::path& path, const std::string& content) {
-    std::ofstream(path, std::ios::binary) << content;
-}
-
-}  // namespace sahl::tests::film
+}  // namespace sahl::tests
