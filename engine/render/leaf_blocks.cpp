@@ -43,7 +43,8 @@ void pack_triangles(const Scene& scene, const LoweredScene& lowered, const BvhLe
     });
 }
 
-void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::SphereBlock& block) {
+void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
+                  device::SphereBlock& block) {
     std::fill(std::begin(block.radius), std::end(block.radius), nan);
     fill_ids(block);
     for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
@@ -55,7 +56,8 @@ void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf
     });
 }
 
-void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::QuadricBlock& block) {
+void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
+                   device::QuadricBlock& block) {
     for (auto& row : block.m) {
         std::fill(std::begin(row), std::end(row), nan);
     }
@@ -72,7 +74,8 @@ void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLea
     });
 }
 
-void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, device::PolygonBlock& block) {
+void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
+                   device::PolygonBlock& block) {
     std::fill(std::begin(block.normal_x), std::end(block.normal_x), nan);
     fill_ids(block);
     for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
@@ -105,7 +108,9 @@ HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, co
             case SAHL_KIND_POLYGON:
                 pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
                 break;
-            default: pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block)); break;
+            default:
+                pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block));
+                break;
         }
         block += std::size_t{block_lines(leaf.kind)} * SAHL_LEAF_LINE_BYTES;
     }

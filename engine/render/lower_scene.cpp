@@ -6,8 +6,8 @@
 #include <limits>
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 #include <glm/gtc/matrix_access.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
@@ -22,9 +22,7 @@ using glm::dmat4;
 using glm::dvec3;
 using glm::vec3;
 
-dvec3 transform_point(const dmat4& m, const dvec3& p) {
-    return dvec3(m * glm::dvec4(p, 1));
-}
+dvec3 transform_point(const dmat4& m, const dvec3& p) { return dvec3(m * glm::dvec4(p, 1)); }
 
 /// The box lo..hi in floats that contains it, widened by the rounding that shapes went through on
 /// their way to the device.
@@ -75,15 +73,24 @@ public:
         mirrored_ = glm::determinant(linear_) < 0;
         lowered_ = {0, primitive.material, static_cast<std::uint32_t>(out_.shape_data.size()), 0};
         switch (primitive.kind) {
-            case PrimitiveKind::triangle: add_triangle(scene_.triangles[primitive.index]); break;
-            case PrimitiveKind::polygon: add_polygon(scene_.polygons[primitive.index]); break;
-            case PrimitiveKind::sphere: add_sphere(scene_.spheres[primitive.index]); break;
-            case PrimitiveKind::cone: add_cone(scene_.cones[primitive.index]); break;
+            case PrimitiveKind::triangle:
+                add_triangle(scene_.triangles[primitive.index]);
+                break;
+            case PrimitiveKind::polygon:
+                add_polygon(scene_.polygons[primitive.index]);
+                break;
+            case PrimitiveKind::sphere:
+                add_sphere(scene_.spheres[primitive.index]);
+                break;
+            case PrimitiveKind::cone:
+                add_cone(scene_.cones[primitive.index]);
+                break;
         }
         for (int k = 0; k < 3; ++k) {
             if (!std::isfinite(bounds_.lo[k]) || !std::isfinite(bounds_.hi[k])) {
-                throw Error(ExitCode::scene, "primitive " + std::to_string(id) +
-                                                 " has no finite place in the world; check its coordinates and transform");
+                throw Error(ExitCode::scene,
+                            "primitive " + std::to_string(id) +
+                                " has no finite place in the world; check its coordinates and transform");
             }
         }
         out_.primitives.push_back(lowered_);
@@ -108,7 +115,8 @@ private:
         const int order[3] = {0, mirrored_ ? 2 : 1, mirrored_ ? 1 : 2};
         points_.clear();
         for (const int corner : order) {
-            points_.emplace_back(transform_point(transform_, dvec3(scene_.vertices[triangle.vertices[corner]])));
+            points_.emplace_back(
+                transform_point(transform_, dvec3(scene_.vertices[triangle.vertices[corner]])));
             push(points_.back());
         }
         if (triangle.smooth) {
@@ -252,7 +260,8 @@ LoweredScene lower_scene(const Scene& scene) {
     const std::size_t count = scene.primitives.size();
     if (count > SAHL_MAX_PRIMITIVES) {
         throw Error(ExitCode::scene, "the scene has " + std::to_string(count) + " primitives, at most " +
-                                         std::to_string(SAHL_MAX_PRIMITIVES) + " are possible; split the scene");
+                                         std::to_string(SAHL_MAX_PRIMITIVES) +
+                                         " are possible; split the scene");
     }
     LoweredScene out;
     out.primitives.reserve(count);
@@ -279,7 +288,8 @@ std::uint32_t block_id(const Scene& scene, std::uint32_t id) {
         (primitive.kind == PrimitiveKind::sphere && scene.spheres[primitive.index].inside_only) ||
         (primitive.kind == PrimitiveKind::cone && scene.cones[primitive.index].inside_only);
     const bool transparent = scene.materials[primitive.material].transmission != vec3(0);
-    return id | SAHL_ID_BIAS | (inside_only ? SAHL_ID_INSIDE_ONLY : 0U) | (transparent ? SAHL_ID_TRANSPARENT : 0U);
+    return id | SAHL_ID_BIAS | (inside_only ? SAHL_ID_INSIDE_ONLY : 0U) |
+           (transparent ? SAHL_ID_TRANSPARENT : 0U);
 }
 
 }  // namespace sahl

@@ -59,19 +59,21 @@ Renderer::Renderer(Device& device, const Scene& scene) : impl_(std::make_unique<
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
-const BvhStatistics& Renderer::bvh_statistics() const {
-    return impl_->device_scene.bvh_statistics;
-}
+const BvhStatistics& Renderer::bvh_statistics() const { return impl_->device_scene.bvh_statistics; }
 
-RenderStatistics Renderer::render(const RenderSettings& settings, Film& film, const ProgressCallback& progress) {
+RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
+                                  const ProgressCallback& progress) {
     const Resolution& resolution = settings.resolution;
     const Crop crop = settings.crop.value_or(Crop{0, 0, resolution.width, resolution.height});
     if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > resolution.width || crop.y1 > resolution.height ||
         film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
-        throw Error(ExitCode::usage, "the crop must lie inside the image and the film must have the crop's size");
+        throw Error(ExitCode::usage,
+                    "the crop must lie inside the image and the film must have the crop's size");
     }
-    const std::uint64_t samples = std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(settings.spp);
-    const std::uint64_t launchable = std::uint64_t{impl_->device.max_work_items()} * impl_->device.rays_per_item();
+    const std::uint64_t samples =
+        std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(settings.spp);
+    const std::uint64_t launchable =
+        std::uint64_t{impl_->device.max_work_items()} * impl_->device.rays_per_item();
     const auto capacity =
         static_cast<std::uint32_t>(std::min({std::uint64_t{settings.ray_budget}, samples, launchable}));
     RayQueues queues(impl_->device, capacity, settings.depth, impl_->device_scene.constants.light_count);

@@ -21,8 +21,8 @@ struct Crop {
 
 struct RenderSettings {
     Resolution resolution;
-    int depth = 5;          ///< generations after the camera ray; 0 is ray casting
-    int spp = 1;            ///< samples a pixel, 1..16384; 1 samples the pixel's centre
+    int depth = 5;  ///< generations after the camera ray; 0 is ray casting
+    int spp = 1;    ///< samples a pixel, 1..16384; 1 samples the pixel's centre
     std::uint64_t seed = 0;
     std::optional<Crop> crop;  ///< none: the whole image
     /// Rays of a batch. Does not change the image: what does not fit waits.
@@ -55,7 +55,8 @@ public:
     const BvhStatistics& bvh_statistics() const;
 
     /// Adds the image of `settings` into `film` (of the crop's size).
-    RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {});
+    RenderStatistics render(const RenderSettings& settings, Film& film,
+                            const ProgressCallback& progress = {});
 
 private:
     struct Impl;

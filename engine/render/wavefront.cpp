@@ -30,10 +30,10 @@ void add_to_film(std::optional<PendingContributions>& pending, std::uint32_t cap
     pending->light.wait();
     pending->pixels.wait();
     const float* light = pending->light.data();
-    film.add({pending->pixels.data(), pending->count}, light, light + capacity, light + 2 * std::size_t{capacity});
+    film.add({pending->pixels.data(), pending->count}, light, light + capacity,
+             light + 2 * std::size_t{capacity});
     pending.reset();
 }
-
 
 /// Launches the kernels of one generation on a batch of rays.
 class GenerationLauncher {
@@ -45,12 +45,14 @@ public:
           rays_per_item_(wavefront.device.rays_per_item()) {}
 
     void generate(const device::CameraConstants& camera, const device::WaveConstants& wave, RayBatch& batch) {
-        kernels_.generate.launch(per_ray(0, wave.count), camera, wave, batch.rays, batch.ids, queues_.capacity);
+        kernels_.generate.launch(per_ray(0, wave.count), camera, wave, batch.rays, batch.ids,
+                                 queues_.capacity);
     }
 
     /// `next` may be the batch itself: children are staged. Both `next` and `waiting` are written
     /// only where `spawn`.
-    void trace(const WaitingBatch& in_work, bool spawn, Contributions& out, RayBatch& next, RayBatch& waiting) {
+    void trace(const WaitingBatch& in_work, bool spawn, Contributions& out, RayBatch& next,
+               RayBatch& waiting) {
         const RayBatch& batch = queues_.batches[in_work.slot];
         RayQueues& q = queues_;
         const std::uint32_t count = in_work.count;
@@ -58,21 +60,24 @@ public:
         const Launch rays = per_ray(in_work.generation, count);
         const Launch block_launch{blocks, in_work.generation, count};
 
-        kernels_.intersect.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.constants,
-                                  batch.rays, batch.ids, q.hits, q.hit_primitives, q.capacity, count);
+        kernels_.intersect.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices,
+                                  scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives,
+                                  q.capacity, count);
         kernels_.shade.launch(rays, scene_.primitives, scene_.shape_data, scene_.materials, scene_.lights,
-                              scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives, out.light, out.pixels,
-                              q.shadow_surfaces, q.shadow_light, q.children, q.child_ids, q.outcomes, q.capacity,
-                              count, spawn ? 1U : 0U);
+                              scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives, out.light,
+                              out.pixels, q.shadow_surfaces, q.shadow_light, q.children, q.child_ids,
+                              q.outcomes, q.capacity, count, spawn ? 1U : 0U);
         kernels_.shadow.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.primitives,
-                               scene_.materials, scene_.lights, scene_.constants, q.hit_primitives, q.shadow_surfaces,
-                               q.shadow_light, q.outcomes, out.light, q.capacity, count);
-        kernels_.count_children.launch(block_launch, q.outcomes, q.block_counts, q.block_shadow_rays, count, blocks);
-        kernels_.sum_children.launch({1, in_work.generation, blocks}, q.block_counts, q.block_shadow_rays, q.totals,
-                                     blocks);
+                               scene_.materials, scene_.lights, scene_.constants, q.hit_primitives,
+                               q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, count);
+        kernels_.count_children.launch(block_launch, q.outcomes, q.block_counts, q.block_shadow_rays, count,
+                                       blocks);
+        kernels_.sum_children.launch({1, in_work.generation, blocks}, q.block_counts, q.block_shadow_rays,
+                                     q.totals, blocks);
         if (spawn) {
-            kernels_.compact.launch(block_launch, q.children, q.child_ids, q.outcomes, q.block_counts, next.rays,
-                                    next.ids, waiting.rays, waiting.ids, q.capacity, count, blocks);
+            kernels_.compact.launch(block_launch, q.children, q.child_ids, q.outcomes, q.block_counts,
+                                    next.rays, next.ids, waiting.rays, waiting.ids, q.capacity, count,
+                                    blocks);
         }
     }
 

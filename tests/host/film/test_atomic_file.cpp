@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 namespace sahl {
 namespace {
 
+using tests::TemporaryFolder;
 using tests::film::content_of;
 using tests::film::NoPrivileges;
 using tests::film::put;
-using tests::TemporaryFolder;
 
 void write(const fs::path& path, const std::string& content) {
     write_file(path, std::as_bytes(std::span(content)));

@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 namespace sahl {
 namespace {
 
+using tests::TemporaryFolder;
 using tests::film::content_of;
 using tests::film::NoPrivileges;
 using tests::film::put;
-using tests::TemporaryFolder;
 
 /// A smooth picture of odd size with values from 0 to 1, higher than one band of rows.
 Image gradient(int width = 37, int height = 300) {

@@ -20,7 +20,8 @@ double number_at(const LoweredScene& lowered, std::uint32_t at) {
 
 glm::dvec3 vector_at(const LoweredScene& lowered, std::uint32_t at) {
     const float* data = &lowered.shape_data[at];
-    return {double{data[0]} + double{data[3]}, double{data[1]} + double{data[4]}, double{data[2]} + double{data[5]}};
+    return {double{data[0]} + double{data[3]}, double{data[1]} + double{data[4]},
+            double{data[2]} + double{data[5]}};
 }
 
 void check_near(const glm::dvec3& value, const glm::dvec3& expected, double tolerance) {
@@ -83,7 +84,8 @@ TEST_CASE("normals stay outward under a mirroring transform") {
     // The square and the triangle face +z in their own space, so -z in the mirrored world.
     check_near(vector_at(lowered, lowered.primitives[2].data), {0, 0, -1}, 1e-14);
     const float* data = &lowered.shape_data[lowered.primitives[3].data];
-    const glm::vec3 v0(data[0], data[1], data[2]), v1(data[3], data[4], data[5]), v2(data[6], data[7], data[8]);
+    const glm::vec3 v0(data[0], data[1], data[2]), v1(data[3], data[4], data[5]),
+        v2(data[6], data[7], data[8]);
     CHECK(glm::cross(v1 - v0, v2 - v0).z < 0);
     CHECK(lowered.primitives[3].flags == SAHL_PRIMITIVE_SMOOTH);
     // Corners 1 and 2 change places with their normals: (0, .6, .8) goes by the inverse transpose.
