@@ -26,7 +26,7 @@ std::string read_kernel(const std::string& name, const std::string& included_fro
     if (const char* folder = std::getenv("SAHL_KERNEL_DIR"); folder != nullptr && *folder != '\0') {
         const std::filesystem::path path = std::filesystem::path(folder) / name;
         std::ifstream file(path, std::ios::binary);
-        const std::string text(std::istreambuf_iterator<char>(file), {});
+        std::string text(std::istreambuf_iterator<char>(file), {});
         if (file.is_open() && !file.bad()) return text;
         throw Error(ExitCode::device,
                     fmt::format("{}: cannot read this kernel source{}; SAHL_KERNEL_DIR must be the "

@@ -71,7 +71,7 @@ private:
     }
 
     void check_space() const {
-        struct statvfs space;
+        struct statvfs space {};
         if (statvfs(path_.c_str(), &space) != 0) refuse(path_.parent_path(), std::strerror(errno));
         const std::uintmax_t free = std::uintmax_t{space.f_bavail} * space.f_frsize;
         if (free < least_free) refuse(path_.parent_path(), fmt::format("only {} KiB are free", free >> 10));
@@ -103,7 +103,7 @@ void remove_stale_folders(const fs::path& parent) {
     for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path folder = entry->path();
         if (folder.filename().string().rfind(folder_prefix, 0) != 0) continue;
-        struct stat status;
+        struct stat status {};
         if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != geteuid())
             continue;
         const int file = open((folder / lock_name).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);

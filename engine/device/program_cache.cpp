@@ -50,7 +50,7 @@ std::optional<fs::path> cache_folder() {
         if (value == nullptr || *value == '\0') return std::nullopt;
         return fs::path(value);
     };
-    if (const auto folder = variable("SAHL_CACHE_DIR")) return folder;
+    if (auto folder = variable("SAHL_CACHE_DIR")) return folder;
     if (const auto folder = variable("XDG_CACHE_HOME")) return *folder / "sahl";
     if (const auto folder = variable("HOME")) return *folder / ".cache" / "sahl";
     return std::nullopt;
@@ -77,7 +77,7 @@ private:
 /// All bytes of a regular file that this user or root wrote: its contents will be run.
 std::optional<std::string> read_own_file(const fs::path& path) {
     const File file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status;
+    struct stat status {};
     if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
     if (status.st_uid != geteuid() && status.st_uid != 0) return std::nullopt;
     std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
@@ -101,7 +101,7 @@ bool write_all(int descriptor, std::string_view bytes) {
 }
 
 std::optional<CachedProgram> parse(std::string_view file, std::string_view key) {
-    Header header;
+    Header header{};
     if (file.size() < sizeof(header)) return std::nullopt;
     std::memcpy(&header, file.data(), sizeof(header));
     if (header.magic != file_magic || header.version != file_version) return std::nullopt;

@@ -138,6 +138,7 @@ void Cse167Reader::read_command() {
                                        [&](const Command& c) { return c.name == word_.text; });
     if (command == commands.end()) {
         std::vector<std::string_view> names;
+        names.reserve(commands.size());
         for (const Command& c : commands) names.push_back(c.name);
         const std::string hint = did_you_mean(word_.text, names);
         throw SceneError(reader_.place(word_),
