@@ -4,6 +4,7 @@
 
 #include "kernels/device_types.h"
 #include "kernels/math.h"
+#include "kernels/simd.h"
 
 typedef struct {
     float3 origin;
@@ -77,6 +78,18 @@ static inline void offer_roots(HitState* state, float enter, bool enter_valid, f
     }
     if (leave_valid) {
         offer_hit(state, leave, 0.0f, 0.0f, id, any_hit);
+    }
+}
+
+/// The roots of four closed surfaces, NaN where the ray misses one.
+static inline void offer_chords(HitState* state, float4 enter, float4 leave, const global uint* ids,
+                                uint exclude, bool any_hit) {
+    uint lanes = mask4((enter <= state->t) & (leave >= state->t_min));
+    while (lanes != 0u) {
+        uint lane = lowest_lane(lanes);
+        lanes &= lanes - 1u;
+        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, ids[lane], exclude,
+                    any_hit);
     }
 }
 

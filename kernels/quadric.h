@@ -46,14 +46,7 @@ static inline void intersect_ellipsoids(const global QuadricBlock* block, const 
                                         bool any_hit) {
     ObjectRays r = object_rays(block, ray, 0.0f);
     float4 half_chord = sqrt((1.0f - (r.px * r.px + r.py * r.py + r.pz * r.pz)) * r.inverse_dd);
-    float4 enter = r.shift - half_chord, leave = r.shift + half_chord;
-    uint lanes = mask4((enter <= state->t) & (leave >= state->t_min));
-    while (lanes != 0u) {
-        uint lane = lowest_lane(lanes);
-        lanes &= lanes - 1u;
-        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane],
-                    ray->exclude, any_hit);
-    }
+    offer_chords(state, r.shift - half_chord, r.shift + half_chord, block->id, ray->exclude, any_hit);
 }
 
 static inline void intersect_cones(const global QuadricBlock* block, const Ray* ray, HitState* state,

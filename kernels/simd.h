@@ -21,25 +21,19 @@ static inline uint mask16_ge(float16 a, float16 b) {
     return __builtin_ia32_cmpps512_mask(a, b, SAHL_GE_OS, (ushort)0xffff, 4);
 }
 
-#elif defined(__AVX2__) && !defined(SAHL_PLAIN_OPENCL)
-
-static inline uint sign_bits8(int8 lanes) { return (uint)__builtin_ia32_movmskps256(as_float8(lanes)); }
-static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
-static inline uint mask16_le(float16 a, float16 b) {
-    return sign_bits8(a.lo <= b.lo) | sign_bits8(a.hi <= b.hi) << 8;
-}
-static inline uint mask16_ge(float16 a, float16 b) {
-    return sign_bits8(a.lo >= b.lo) | sign_bits8(a.hi >= b.hi) << 8;
-}
-
 #else
 
+#if defined(__AVX2__) && !defined(SAHL_PLAIN_OPENCL)
+static inline uint sign_bits8(int8 lanes) { return (uint)__builtin_ia32_movmskps256(as_float8(lanes)); }
+#else
 static inline uint sign_bits8(int8 lanes) {
     int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
     int4 quarter = bits.lo | bits.hi;
     int2 half_of_it = quarter.lo | quarter.hi;
     return (uint)(half_of_it.x | half_of_it.y);
 }
+#endif
+
 static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
 static inline uint mask16_le(float16 a, float16 b) {
     return sign_bits8(a.lo <= b.lo) | sign_bits8(a.hi <= b.hi) << 8;

@@ -7,7 +7,6 @@
 #define SAHL_SPHERE_H
 
 #include "kernels/hit.h"
-#include "kernels/simd.h"
 
 static inline void intersect_spheres(const global SphereBlock* block, const Ray* ray, HitState* state,
                                      bool any_hit) {
@@ -20,15 +19,7 @@ static inline void intersect_spheres(const global SphereBlock* block, const Ray*
     float4 middle = (cx * d.x + cy * d.y + cz * d.z) * inverse_dd;
     float4 lx = cx - middle * d.x, ly = cy - middle * d.y, lz = cz - middle * d.z;
     float4 half_chord = sqrt((radius * radius - (lx * lx + ly * ly + lz * lz)) * inverse_dd);
-    float4 enter = middle - half_chord, leave = middle + half_chord;
-    // A miss has a NaN half chord and fails both.
-    uint lanes = mask4((enter <= state->t) & (leave >= state->t_min));
-    while (lanes != 0u) {
-        uint lane = lowest_lane(lanes);
-        lanes &= lanes - 1u;
-        offer_roots(state, ((float*)&enter)[lane], true, ((float*)&leave)[lane], true, block->id[lane],
-                    ray->exclude, any_hit);
-    }
+    offer_chords(state, middle - half_chord, middle + half_chord, block->id, ray->exclude, any_hit);
 }
 
 #endif
