@@ -15,20 +15,25 @@ using sahl_uint = std::uint32_t;
 
 // ---- Acceleration structure -------------------------------------------------------------
 
-// Kinds of leaf blocks. A sphere whose transform is no similarity is an ellipsoid; a cylinder is
-// a cone of slope 0.
+// Kinds of leaves. A sphere whose transform is no similarity is an ellipsoid; a cylinder is a cone of
+// slope 0.
 #define SAHL_KIND_TRIANGLE 0u
 #define SAHL_KIND_SPHERE 1u
 #define SAHL_KIND_ELLIPSOID 2u
 #define SAHL_KIND_CONE 3u
 #define SAHL_KIND_POLYGON 4u
+#define SAHL_KIND_SOLID_CONE 5u
+#define SAHL_KIND_DISC 6u
+#define SAHL_KIND_BOX 7u
+#define SAHL_KIND_INSTANCE 8u
 
 // A child reference is a node's index, or a leaf: SAHL_CHILD_LEAF | kind << SAHL_CHILD_KIND_SHIFT
-// | offset of its one block in the leaf buffer, in lines of 64 bytes.
+// | offset of its one block in the leaf buffer, in lines of 64 bytes; for an instance: its place in
+// the array of instances.
 #define SAHL_CHILD_LEAF 0x80000000u
-#define SAHL_CHILD_KIND_SHIFT 28u
-#define SAHL_CHILD_KIND_MASK 7u
-#define SAHL_CHILD_OFFSET_MASK 0x0fffffffu
+#define SAHL_CHILD_KIND_SHIFT 27u
+#define SAHL_CHILD_KIND_MASK 15u
+#define SAHL_CHILD_OFFSET_MASK 0x07ffffffu
 #define SAHL_LEAF_LINE_BYTES 64u
 #define SAHL_BLOCK_WIDTH 4u
 
@@ -41,7 +46,8 @@ using sahl_uint = std::uint32_t;
 // word, read as a float beside the vertices, from being a denormal.
 #define SAHL_ID_BIAS 0x40000000u
 #define SAHL_ID_TRANSPARENT 0x08000000u
-#define SAHL_ID_INSIDE_ONLY 0x10000000u
+#define SAHL_ID_BACK_ONLY 0x10000000u
+#define SAHL_ID_FRONT_ONLY 0x20000000u
 #define SAHL_ID_MASK 0x07ffffffu
 #define SAHL_NO_PRIMITIVE 0x07ffffffu
 #define SAHL_MAX_PRIMITIVES 0x07fffff0u
@@ -113,6 +119,7 @@ SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
 // For all but triangles each vector is three floats and the three that they lack of the double
 // precision value, each number a float and the one it lacks.
 #define SAHL_PRIMITIVE_SMOOTH 1u
+#define SAHL_PRIMITIVE_TURNED 2u  // a cone whose apex is at z = 0
 typedef struct {
     sahl_uint kind;
     sahl_uint material;

@@ -73,10 +73,10 @@ static inline void offer_roots(HitState* state, float enter, bool enter_valid, f
         enter_valid = enter_valid && !enter_is_origin;
         leave_valid = leave_valid && enter_is_origin;
     }
-    if (enter_valid && !(id & SAHL_ID_INSIDE_ONLY)) {
+    if (enter_valid && !(id & SAHL_ID_BACK_ONLY)) {
         offer_hit(state, enter, 0.0f, 0.0f, id, any_hit);
     }
-    if (leave_valid) {
+    if (leave_valid && !(id & SAHL_ID_FRONT_ONLY)) {
         offer_hit(state, leave, 0.0f, 0.0f, id, any_hit);
     }
 }

@@ -61,6 +61,13 @@ dvec3 newell_normal(const std::vector<vec3>& points) {
     return glm::normalize(normal);
 }
 
+/// A right-handed orthonormal frame whose z is `unit`.
+dmat3 frame_around(const dvec3& unit) {
+    const dvec3 helper = std::abs(unit.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    const dvec3 x = glm::normalize(glm::cross(helper, unit));
+    return {x, glm::cross(unit, x), unit};
+}
+
 /// Appends shapes one after the other; each writes its data and returns kind and bounds.
 class Lowering {
 public:
@@ -84,6 +91,12 @@ public:
                 break;
             case PrimitiveKind::cone:
                 add_cone(scene_.cones[primitive.index]);
+                break;
+            case PrimitiveKind::disc:
+                add_disc(scene_.discs[primitive.index]);
+                break;
+            case PrimitiveKind::box:
+                add_box(scene_.boxes[primitive.index]);
                 break;
         }
         for (int k = 0; k < 3; ++k) {
@@ -185,11 +198,8 @@ private:
         const dvec3 axis = (turned ? cone.base : cone.apex) - base;
         const double base_radius = turned ? cone.apex_radius : cone.base_radius;
         const double apex_radius = turned ? cone.base_radius : cone.apex_radius;
-        const dvec3 unit = glm::normalize(axis);
-        const dvec3 helper = std::abs(unit.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-        const dvec3 x = glm::normalize(glm::cross(helper, unit));
-        const dvec3 y = glm::cross(unit, x);
-        const dmat3 world_from_cone = linear_ * dmat3(x * base_radius, y * base_radius, axis);
+        const dmat3 frame = frame_around(glm::normalize(axis));
+        const dmat3 world_from_cone = linear_ * dmat3(frame[0] * base_radius, frame[1] * base_radius, axis);
         const dvec3 world_base = transform_point(transform_, base);
         const dvec3 world_apex = transform_point(transform_, base + axis);
         dvec3 lo, hi;
@@ -199,10 +209,37 @@ private:
             lo[k] = std::min(world_base[k] - radius, world_apex[k] - far_radius);
             hi[k] = std::max(world_base[k] + radius, world_apex[k] + far_radius);
         }
-        lowered_.kind = SAHL_KIND_CONE;
+        lowered_.kind = cone.capped ? SAHL_KIND_SOLID_CONE : SAHL_KIND_CONE;
         push_object_space(world_from_cone, world_base);
         push_exact((apex_radius - base_radius) / base_radius);
+        if (turned) lowered_.flags |= SAHL_PRIMITIVE_TURNED;
         bounds_ = outer_bounds(lo, hi);
+    }
+
+    void add_disc(const Disc& disc) {
+        const dmat3 frame = frame_around(glm::normalize(disc.normal));
+        const dmat3 world_from_disc =
+            linear_ * dmat3(frame[0] * disc.radius, frame[1] * disc.radius, frame[2] * disc.radius);
+        const dvec3 center = transform_point(transform_, disc.center);
+        dvec3 half_extent;
+        for (int k = 0; k < 3; ++k) {
+            half_extent[k] = glm::length(glm::dvec2(world_from_disc[0][k], world_from_disc[1][k]));
+        }
+        lowered_.kind = SAHL_KIND_DISC;
+        push_object_space(world_from_disc, center);
+        bounds_ = outer_bounds(center - half_extent, center + half_extent);
+    }
+
+    void add_box(const Box& box) {
+        const dvec3 half = (box.hi - box.lo) / 2.0;
+        const dmat3 world_from_box =
+            linear_ * dmat3(dvec3(half.x, 0, 0), dvec3(0, half.y, 0), dvec3(0, 0, half.z));
+        const dvec3 center = transform_point(transform_, (box.lo + box.hi) / 2.0);
+        dvec3 half_extent(0);
+        for (int axis = 0; axis < 3; ++axis) half_extent += glm::abs(world_from_box[axis]);
+        lowered_.kind = SAHL_KIND_BOX;
+        push_object_space(world_from_box, center);
+        bounds_ = outer_bounds(center - half_extent, center + half_extent);
     }
 
     void push_object_space(const dmat3& world_from_object, const dvec3& origin) {
@@ -284,11 +321,9 @@ LoweredScene lower_scene(const Scene& scene) {
 
 std::uint32_t block_id(const Scene& scene, std::uint32_t id) {
     const Primitive& primitive = scene.primitives[id];
-    const bool inside_only =
-        (primitive.kind == PrimitiveKind::sphere && scene.spheres[primitive.index].inside_only) ||
-        (primitive.kind == PrimitiveKind::cone && scene.cones[primitive.index].inside_only);
     const bool transparent = scene.materials[primitive.material].transmission != vec3(0);
-    return id | SAHL_ID_BIAS | (inside_only ? SAHL_ID_INSIDE_ONLY : 0U) |
+    return id | SAHL_ID_BIAS | (primitive.sides == Sides::back ? SAHL_ID_BACK_ONLY : 0U) |
+           (primitive.sides == Sides::front ? SAHL_ID_FRONT_ONLY : 0U) |
            (transparent ? SAHL_ID_TRANSPARENT : 0U);
 }
 

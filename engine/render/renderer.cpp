@@ -43,13 +43,13 @@ device::CameraConstants camera_constants(const Camera& camera, const Resolution&
 struct Renderer::Impl {
     Impl(Device& on, const Scene& scene)
         : device(on),
-          camera(scene.camera),
+          cameras(scene.cameras),
           device_scene(make_device_scene(on, scene)),
           program(on, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}),
           kernels(program) {}
 
     Device& device;
-    Camera camera;
+    std::vector<Camera> cameras;
     DeviceScene device_scene;
     Program program;
     WavefrontKernels kernels;
@@ -79,9 +79,12 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
     RayQueues queues(impl_->device, capacity, settings.depth, impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
     RenderStatistics statistics =
-        trace_waves(wavefront, camera_constants(impl_->camera, resolution), settings, crop, film, progress);
+        trace_waves(wavefront, camera_constants(impl_->cameras[settings.camera], resolution), settings, crop,
+                    film, progress);
     impl_->program.store_binary();  // now that each kernel has been compiled
     return statistics;
 }
+
+std::vector<AovImage> Renderer::render_aovs(const RenderSettings&, std::span<const Aov>) { return {}; }
 
 }  // namespace sahl

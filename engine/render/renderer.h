@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/accel/bvh.h"
 #include "engine/device/device.h"
+#include "engine/film/aov.h"
 #include "engine/film/film.h"
 #include "engine/scene/scene.h"
 
@@ -24,6 +26,7 @@ struct RenderSettings {
     int depth = 5;  ///< generations after the camera ray; 0 is ray casting
     int spp = 1;    ///< samples a pixel, 1..16384; 1 samples the pixel's centre
     std::uint64_t seed = 0;
+    std::size_t camera = 0;    ///< in Scene::cameras
     std::optional<Crop> crop;  ///< none: the whole image
     /// Rays of a batch. Does not change the image: what does not fit waits.
     std::uint32_t ray_budget = 1u << 15;
@@ -57,6 +60,9 @@ public:
     /// Adds the image of `settings` into `film` (of the crop's size).
     RenderStatistics render(const RenderSettings& settings, Film& film,
                             const ProgressCallback& progress = {});
+
+    /// What `aovs` ask for, of the camera, the crop and the samples of `settings`.
+    std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs);
 
 private:
     struct Impl;

@@ -170,13 +170,13 @@ void Cse167Reader::read_size() {
 
 void Cse167Reader::read_camera() {
     once(camera_line_, reader_.place(word_), "camera");
-    scene_.camera.eye = reader_.vector("the camera's eye");
+    scene_.cameras[0].eye = reader_.vector("the camera's eye");
     const SourceLocation look_at = reader_.place();
-    scene_.camera.look_at = reader_.vector("the camera's look-at point");
+    scene_.cameras[0].look_at = reader_.vector("the camera's look-at point");
     const SourceLocation up = reader_.place();
-    scene_.camera.up = reader_.vector("the camera's up vector");
-    scene_.camera.fov_y = reader_.number("the camera's vertical angle in degrees", field_of_view);
-    check_camera(scene_.camera, look_at, up);
+    scene_.cameras[0].up = reader_.vector("the camera's up vector");
+    scene_.cameras[0].fov_y = reader_.number("the camera's vertical angle in degrees", field_of_view);
+    check_camera(scene_.cameras[0], look_at, up);
 }
 
 // The name, which may hold spaces, is ignored: the user names the image.
@@ -317,7 +317,10 @@ Material& Cse167Reader::change_material() {
 }
 
 void Cse167Reader::add(PrimitiveKind kind, std::size_t index) {
-    if (material_changed_) scene_.materials.push_back(material_);
+    if (material_changed_) {
+        material_.name = fmt::format("material{}", scene_.materials.size() + 1);
+        scene_.materials.push_back(material_);
+    }
     material_changed_ = false;
     // The identity is there from the start; otherwise objects in a row share one.
     std::size_t transform = 0;

@@ -43,7 +43,7 @@ private:
     void read_patch();
     std::size_t read_corner_count(std::string_view what, std::size_t numbers_per_corner, long long most);
     void need_fill(const Token& word) const;
-    void add(PrimitiveKind kind, std::size_t index);
+    void add(PrimitiveKind kind, std::size_t index, Sides sides = Sides::both);
 
     TextReader& reader_;
     Scene scene_;
@@ -111,7 +111,7 @@ void NffReader::read_background(const Token& word) {
 
 void NffReader::read_view(const Token& word) {
     once(view_, reader_.place(word), "view (v)");
-    Camera& camera = scene_.camera;
+    Camera& camera = scene_.cameras[0];
     std::array<std::optional<SourceLocation>, view_keys.size()> seen;
     while (std::any_of(seen.begin(), seen.end(), [](const auto& place) { return !place; })) {
         const Token key = reader_.peek();
@@ -165,6 +165,7 @@ void NffReader::read_fill() {
             ior_place, "a fill that transmits (T above 0) needs an index of refraction above 0, such as 1.5");
     }
     Material material;
+    material.name = fmt::format("fill{}", scene_.materials.size() + 1);
     material.diffuse = color * diffuse;
     material.specular = glm::vec3(specular);
     material.reflection = glm::vec3(specular);
@@ -180,9 +181,8 @@ void NffReader::read_sphere() {
     const SourceLocation place = reader_.place();
     const double radius = reader_.number("the sphere's radius");
     sphere.radius = std::abs(radius);
-    sphere.inside_only = radius < 0;
     check_range(sphere.radius, positive_length, "the size of the sphere's radius", place);
-    add(PrimitiveKind::sphere, scene_.spheres.size());
+    add(PrimitiveKind::sphere, scene_.spheres.size(), radius < 0 ? Sides::back : Sides::both);
     scene_.spheres.push_back(sphere);
 }
 
@@ -204,7 +204,7 @@ void NffReader::read_cone() {
                          "one radius of the cone is negative; make both negative (only its inside is "
                          "seen) or none");
     }
-    cone.inside_only = base_radius < 0 || apex_radius < 0;
+    const bool inside_only = base_radius < 0 || apex_radius < 0;
     cone.base_radius = std::abs(base_radius);
     cone.apex_radius = std::abs(apex_radius);
     if (cone.base_radius == 0 && cone.apex_radius == 0) {
@@ -215,7 +215,7 @@ void NffReader::read_cone() {
         check_range(cone.base_radius, positive_length, "the size of the cone's base radius", base_place);
     if (cone.apex_radius != 0)
         check_range(cone.apex_radius, positive_length, "the size of the cone's apex radius", radius_place);
-    add(PrimitiveKind::cone, scene_.cones.size());
+    add(PrimitiveKind::cone, scene_.cones.size(), inside_only ? Sides::back : Sides::both);
     scene_.cones.push_back(cone);
 }
 
@@ -301,9 +301,9 @@ void NffReader::need_fill(const Token& word) const {
     }
 }
 
-void NffReader::add(PrimitiveKind kind, std::size_t index) {
+void NffReader::add(PrimitiveKind kind, std::size_t index, Sides sides) {
     scene_.primitives.push_back({kind, static_cast<std::uint32_t>(index),
-                                 static_cast<std::uint32_t>(scene_.materials.size() - 1), 0});
+                                 static_cast<std::uint32_t>(scene_.materials.size() - 1), 0, sides});
 }
 
 }  // namespace

@@ -124,13 +124,18 @@ private:
         target_.size = size_;
     }
 
+    Sides random_sides() {
+        const double chance = uniform(random_, 0, 1);
+        return chance < 0.2 ? Sides::back : chance < 0.3 ? Sides::front : Sides::both;
+    }
+
     void add_round() {
         Sphere sphere;
         sphere.center = object_center_;
         // Where no transform rounds, the numbers are floats, so that the device has them exactly.
         sphere.radius = static_cast<float>(size_ * uniform(random_, 0.1, 1));
-        sphere.inside_only = uniform(random_, 0, 1) < 0.2;
         target_.id = oracle::add_sphere(scene_, sphere, material_, world_from_object_);
+        scene_.primitives.back().sides = random_sides();
         set_condition(linear_);
         for (int i = 0; i < 12; ++i) {
             const dvec3 n = i < 3 ? dvec3(i == 0, i == 1, i == 2) : unit_vector(random_);
@@ -148,8 +153,8 @@ private:
         cone.base_radius = size_ * uniform(random_, 0.1, 0.8);
         cone.apex_radius = cone.base_radius * (apex_share < 0 ? 1 : apex_share);
         if (uniform(random_, 0, 1) < 0.5) std::swap(cone.base_radius, cone.apex_radius);
-        cone.inside_only = uniform(random_, 0, 1) < 0.2;
         target_.id = oracle::add_cone(scene_, cone, material_, world_from_object_);
+        scene_.primitives.back().sides = random_sides();
 
         if (apex_share == 0) {
             const dvec3 apex = cone.apex_radius == 0 ? cone.apex : cone.base;

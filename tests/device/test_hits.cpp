@@ -104,10 +104,10 @@ TEST_CASE("of surfaces at the same distance the lowest id is hit, and a walk mee
     const Material glass = oracle::glass(vec3(0.5F), 1);
     oracle::add_square(scene, 2, 1, glass);
     for (int i = 0; i < 2; ++i) oracle::add_square(scene, 1, 1, glass);
-    oracle::add_sphere(scene, {{0, 0, 1}, 2, false}, glass);
+    oracle::add_sphere(scene, {{0, 0, 1}, 2}, glass);
     oracle::add_triangle(scene, {{-3, -3, 1}, {3, -3, 1}, {0, 3, 1}}, glass);
     oracle::add_square(scene, 1, 1, glass);
-    oracle::add_cone(scene, {{0, -9, 1}, {0, 9, 1}, 4, 4, false}, glass);
+    oracle::add_cone(scene, {{0, -9, 1}, {0, 9, 1}, 4, 4}, glass);
     oracle::add_square(scene, 0, 1, glass);
     const DeviceScene device_scene = tracer.upload(scene);
     const std::vector<TestRay> rays{{{0.25F, 0.125F, -10}, {0, 0, 1}}, {{0.25F, 0.125F, 12}, {0, 0, -1}}};

@@ -124,11 +124,11 @@ std::vector<Object> objects(Random& random, const Place& place) {
         result.push_back({name, {}, center, size});
         return result.back().scene;
     };
-    oracle::add_sphere(add("sphere"), {center, size, false}, material);
-    oracle::add_sphere(add("ellipsoid"), {{0, 0, 0}, size, false}, material, squeeze);
+    oracle::add_sphere(add("sphere"), {center, size}, material);
+    oracle::add_sphere(add("ellipsoid"), {{0, 0, 0}, size}, material, squeeze);
     const dvec3 axis = size * unit_vector(random);
-    oracle::add_cone(add("cylinder"), {center - axis, center + axis, size, size, false}, material);
-    oracle::add_cone(add("cone"), {center - axis, center + axis, 1.5 * size, 0, false}, material);
+    oracle::add_cone(add("cylinder"), {center - axis, center + axis, size, size}, material);
+    oracle::add_cone(add("cone"), {center - axis, center + axis, 1.5 * size, 0}, material);
     const auto add_mesh = [&](const std::string& name, const ClosedMesh& mesh) {
         Scene& scene = add(name);
         scene = mesh.scene();

@@ -14,8 +14,8 @@ void print_pixel(const char* name, const sahl::Image& image, int x, int y) {
 
 int main() try {
     sahl::Scene scene;
-    scene.camera.eye = {0, 0, 5};
-    scene.camera.look_at = {0, 0, 0};
+    scene.cameras[0].eye = {0, 0, 5};
+    scene.cameras[0].look_at = {0, 0, 0};
     scene.background = {0.125F, 0.25F, 0.5F};
     sahl::Material glow;
     glow.emission = {0.5F, 0.25F, 1.0F};

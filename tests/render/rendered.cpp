@@ -39,7 +39,7 @@ Rendered render(Renderer& renderer, const RenderSettings& settings) {
 }
 
 oracle::Ray pixel_ray(const Scene& scene, const RenderSettings& settings, int x, int y) {
-    return oracle::camera_ray(scene.camera, settings.resolution, x + 0.5, y + 0.5);
+    return oracle::camera_ray(scene.cameras[0], settings.resolution, x + 0.5, y + 0.5);
 }
 
 glm::dvec3 meet_plane(const oracle::Ray& ray, double height) {

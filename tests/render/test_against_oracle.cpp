@@ -57,19 +57,19 @@ dmat4 sheared(const dvec3& position, double shear) {
 
 Scene still_life() {
     Scene scene;
-    scene.camera = {{0.3, -7, 4}, {0, 0, 0.8}, {0, 0, 1}, 40};
+    scene.cameras[0] = {{0.3, -7, 4}, {0, 0, 0.8}, {0, 0, 1}, 40};
     scene.background = {0.1F, 0.2F, 0.4F};
     scene.lights = {oracle::point_light({4, -5, 6}, {30, 28, 25}, {1, 0.1F, 0.5F}),
                     oracle::directional_light({-2, -1, 3}, {0.4F, 0.4F, 0.5F})};
     add_square(scene, 0, 6, glossy({0.6F, 0.5F, 0.4F}, 0.25F));
-    add_sphere(scene, {{-1.6, -1.2, 0.81}, 0.8, false}, tinted_glass());
-    add_sphere(scene, {{0, 0, 0}, 1, false}, glossy({0.8F, 0.2F, 0.2F}, 0.3F),
+    add_sphere(scene, {{-1.6, -1.2, 0.81}, 0.8}, tinted_glass());
+    add_sphere(scene, {{0, 0, 0}, 1}, glossy({0.8F, 0.2F, 0.2F}, 0.3F),
                placed({1.7, 0.6, 0.9}, 30, {1, 2, 3}, {0.9, 0.5, 0.7}));
-    add_sphere(scene, {{0, 0, 0}, 0.6, false}, one_sided_blinn(), sheared({0.2, 1.6, 0.7}, 0.5));
-    add_cone(scene, {{0, 0, 0}, {0, 0, 1.4}, 0.6, 0.1, false}, glossy({0.2F, 0.3F, 0.8F}, 0.2F),
+    add_sphere(scene, {{0, 0, 0}, 0.6}, one_sided_blinn(), sheared({0.2, 1.6, 0.7}, 0.5));
+    add_cone(scene, {{0, 0, 0}, {0, 0, 1.4}, 0.6, 0.1}, glossy({0.2F, 0.3F, 0.8F}, 0.2F),
              placed({-2.6, 1.2, 0.05}, 20, {0, 1, 0}, {1, -0.6, 1.2}));
-    add_cone(scene, {{1.2, -1.9, 0.3}, {2.6, -1.3, 0.35}, 0.25, 0.25, false}, glossy({0.8F, 0.7F, 0.2F}, 0));
-    add_cone(scene, {{-0.2, -2.2, 0.01}, {-0.2, -2.2, 0.7}, 0.3, 0.45, false}, tinted_glass());
+    add_cone(scene, {{1.2, -1.9, 0.3}, {2.6, -1.3, 0.35}, 0.25, 0.25}, glossy({0.8F, 0.7F, 0.2F}, 0));
+    add_cone(scene, {{-0.2, -2.2, 0.01}, {-0.2, -2.2, 0.7}, 0.3, 0.45}, tinted_glass());
     add_polygon(scene,
                 {{0, 0, 0}, {1.5F, 0, 0}, {1.5F, 0.5F, 0}, {0.5F, 0.5F, 0}, {0.5F, 1.5F, 0}, {0, 1.5F, 0}},
                 glossy({0.5F, 0.2F, 0.6F}, 0.2F), placed({-0.9, 0.2, 0.3}, 75, {1, 0, 0.2}, {1, 1.2, -1}));
@@ -77,7 +77,8 @@ Scene still_life() {
                  placed({0.9, -0.9, 0.2}, 15, {0, 0, 1}, {-1, 1, 1}),
                  {{-0.3F, -1, 0}, {0.3F, -1, 0}, {0, -1, 0.5F}});
     add_triangle(scene, {{2.8F, 2, 0.1F}, {4, 1, 0.1F}, {3.2F, 1.8F, 2}}, one_sided_blinn());
-    add_sphere(scene, {{0, 2, 3}, 9, true}, glossy({0.3F, 0.3F, 0.3F}, 0));  // a room around it all
+    add_sphere(scene, {{0, 2, 3}, 9}, glossy({0.3F, 0.3F, 0.3F}, 0));  // a room around it all
+    scene.primitives.back().sides = Sides::back;
     return scene;
 }
 
@@ -92,7 +93,7 @@ Scene random_scene(unsigned seed) {
     };
     const auto color = [&] { return glm::vec3(0.5 + 0.4 * vector()); };
     Scene scene;
-    scene.camera = {{0.5, -8, 1}, {0, 0, 0}, {0.1, 0, 1}, 38};
+    scene.cameras[0] = {{0.5, -8, 1}, {0, 0, 0}, {0.1, 0, 1}, 38};
     scene.background = color();
     scene.lights = {oracle::point_light({5, -6, 7}, {1, 1, 1}),
                     oracle::point_light({-6, -3, 2}, {0.5F, 0.4F, 0.3F})};
@@ -105,10 +106,10 @@ Scene random_scene(unsigned seed) {
         if (i % 7 == 0) material = one_sided_blinn();
         switch (i % 4) {
             case 0:
-                add_sphere(scene, {0.3 * vector(), 1, false}, material, transform);
+                add_sphere(scene, {0.3 * vector(), 1}, material, transform);
                 break;
             case 1:
-                add_cone(scene, {{0, 0, -1}, {0, 0, 1}, 0.8, 0.4 + 0.4 * uniform(random), false}, material,
+                add_cone(scene, {{0, 0, -1}, {0, 0, 1}, 0.8, 0.4 + 0.4 * uniform(random)}, material,
                          transform);
                 break;
             case 2:
@@ -224,8 +225,8 @@ TEST_CASE("render: an image does not depend on the scene's scale", "[render]") {
     scene.transforms[0] = glm::scale(dmat4(1), dvec3(scale));
     for (std::size_t i = 1; i < scene.transforms.size(); ++i)
         scene.transforms[i] = scene.transforms[0] * scene.transforms[i];
-    scene.camera.eye *= scale;
-    scene.camera.look_at *= scale;
+    scene.cameras[0].eye *= scale;
+    scene.cameras[0].look_at *= scale;
     scene.lights[0].position *= scale;
     scene.lights[0].attenuation /= glm::vec3(1, scale, scale * scale);
     // Scene::transforms[0] stays the identity, so objects without a transform get one of their own.

@@ -28,7 +28,7 @@ void add_square_facing_down(Scene& scene, float height, float half, const Materi
 
 TEST_CASE("render: facing mirrors make a geometric series, depth by depth", "[render]") {
     Scene scene;
-    scene.camera = {{0, 0, 0.5}, {0.1, 0, 0}, {0, 1, 0}, 40};
+    scene.cameras[0] = {{0, 0, 0.5}, {0.1, 0, 0}, {0, 1, 0}, 40};
     Material material = mirror({0.5F, 0.75F, 0.25F});
     material.emission = {1, 2, 3};
     add_square(scene, 0, 100, material);
@@ -67,7 +67,7 @@ TEST_CASE("render: a slab displaces what is behind it by Snell's law", "[render]
     constexpr float width = 0.1F;
     constexpr float left = -3;
     Scene scene;
-    scene.camera = {{0.3, 0.2, 3}, {0.5, 0, 0}, {0, 1, 0}, 40};
+    scene.cameras[0] = {{0.3, 0.2, 3}, {0.5, 0, 0}, {0, 1, 0}, 40};
     add_square(scene, 1, 10, glass(glm::vec3(0.5F), 1.5F));
     add_square_facing_down(scene, 0, 10, glass(glm::vec3(0.5F), 1.5F));
     for (int strip = 0; strip < strips; ++strip) {
@@ -97,7 +97,7 @@ TEST_CASE("render: a slab displaces what is behind it by Snell's law", "[render]
 TEST_CASE("render: beyond the critical angle all light is reflected, as one ray", "[render]") {
     Scene scene;
     scene.background = {0, 0, 1};
-    scene.camera = {{0, 0, -1}, {0.9, 0, 0}, {0, 1, 0}, 40};
+    scene.cameras[0] = {{0, 0, -1}, {0.9, 0, 0}, {0, 1, 0}, 40};
     Material surface = glass(glm::vec3(0.5F), 1.5F);
     surface.reflection = glm::vec3(0.25F);
     add_square(scene, 0, 100, surface);  // front up: the camera is inside
@@ -127,8 +127,8 @@ TEST_CASE("render: beyond the critical angle all light is reflected, as one ray"
 TEST_CASE("render: glass of index 1 bends nothing and filters once a surface", "[render]") {
     Scene scene;
     scene.background = {1, 1, 1};
-    scene.camera = {{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 45};
-    add_sphere(scene, {{0, 0, 0}, 1, false}, glass({0.5F, 0.75F, 1}, 1));
+    scene.cameras[0] = {{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 45};
+    add_sphere(scene, {{0, 0, 0}, 1}, glass({0.5F, 0.75F, 1}, 1));
     const Rendered rendered = render(scene, square_settings(32, 2));
     CHECK(close(rendered.at(16, 16), {0.25, 0.5625, 1}, 1e-6));
     CHECK(close(rendered.at(0, 0), {1, 1, 1}, 1e-6));
@@ -139,7 +139,7 @@ TEST_CASE("render: glass of index 1 bends nothing and filters once a surface", "
 /// A lit floor seen from the side of what hangs between it and the light.
 Scene shadowed_floor() {
     Scene scene;
-    scene.camera = {{6, 0, 3}, {0, 0, 0}, {0, 0, 1}, 1};
+    scene.cameras[0] = {{6, 0, 3}, {0, 0, 0}, {0, 0, 1}, 1};
     add_square(scene, 0, 10, oracle::matte(glm::vec3(1)));
     scene.lights = {oracle::point_light({0, 0, 5})};
     return scene;
@@ -160,7 +160,7 @@ TEST_CASE("render: shadows of transparent surfaces take the factor once a surfac
         CHECK(close(middle(scene), {0.5, 0.25, 1}));
     }
     SECTION("a sphere, twice, and straight on") {
-        add_sphere(scene, {{0.3, 0, 2}, 0.5, false}, glass({0.5F, 0.25F, 1}, 1.5F));
+        add_sphere(scene, {{0.3, 0, 2}, 0.5}, glass({0.5F, 0.25F, 1}, 1.5F));
         CHECK(close(middle(scene), {0.25, 0.0625, 1}));
     }
     SECTION("one behind the other, in whatever order they are listed") {

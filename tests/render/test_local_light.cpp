@@ -19,7 +19,7 @@ using oracle::point_light;
 
 Scene seen_from(const dvec3& eye, double fov_y = 45) {
     Scene scene;
-    scene.camera = {eye, {0, 0, 0}, {0, 1, 0}, fov_y};
+    scene.cameras[0] = {eye, {0, 0, 0}, {0, 1, 0}, fov_y};
     return scene;
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("render: a sphere in ambient light is a disc of one colour", "[render]
     Material material;
     material.ambient = {0.5F, 0.25F, 0};
     material.emission = {0.125F, 0, 0};
-    add_sphere(scene, {{0, 0, 0}, 1, false}, material);
+    add_sphere(scene, {{0, 0, 0}, 1}, material);
     int inside = 0;
     const int wrong = wrong_pixels(scene, 128, [&](const oracle::Ray& ray) {
         const bool hit = glm::length(glm::cross(ray.origin, ray.direction)) < 1;
@@ -112,7 +112,7 @@ TEST_CASE("render: light from behind gives Phong nothing and Blinn its highlight
     add_square(scene, 0, 10, material);
     scene.lights = {directional_light({1, 0, -0.5})};
     SECTION("where R·V is positive") {
-        scene.camera = {{-4, 0, 1.2}, {0, 0, 0}, {0, 0, 1}, 10};
+        scene.cameras[0] = {{-4, 0, 1.2}, {0, 0, 0}, {0, 0, 1}, 10};
         CHECK(wrong_pixels(scene, 32, [](const oracle::Ray&) { return dvec3(0); }) == 0);
         return;
     }

@@ -16,14 +16,14 @@ using oracle::emitting;
 /// Glass balls on a mirror: the ray tree doubles at most generations.
 Scene branching_scene() {
     Scene scene;
-    scene.camera = {{0.2, -6, 3}, {0, 0, 0.4}, {0, 0, 1}, 40};
+    scene.cameras[0] = {{0.2, -6, 3}, {0, 0, 0.4}, {0, 0, 1}, 40};
     scene.background = {0.2F, 0.3F, 0.5F};
     scene.lights = {oracle::point_light({3, -4, 5}), oracle::point_light({-4, -1, 3}, {0.4F, 0.3F, 0.2F})};
     Material glass = oracle::glass({0.8F, 0.9F, 0.8F}, 1.3F);
     glass.reflection = glm::vec3(0.2F);
     glass.specular = glm::vec3(0.5F);
     glass.shininess = 20;
-    for (int i = 0; i < 9; ++i) oracle::add_sphere(scene, {{i % 3 - 1, i / 3 - 1, 0.5}, 0.45, false}, glass);
+    for (int i = 0; i < 9; ++i) oracle::add_sphere(scene, {{i % 3 - 1, i / 3 - 1, 0.5}, 0.45}, glass);
     Material floor = oracle::matte({0.7F, 0.6F, 0.5F});
     floor.reflection = glm::vec3(0.3F);
     oracle::add_square(scene, 0, 8, floor);
@@ -110,7 +110,7 @@ TEST_CASE("render: progress is told to its end", "[render]") {
 /// another place.
 Scene slanted_edge(bool upright) {
     Scene scene;
-    scene.camera = {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 90};
+    scene.cameras[0] = {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 90};
     const float slant = 0.03F;
     if (upright) {
         add_polygon(scene, {{-9, -9, 0}, {-9 * slant, -9, 0}, {9 * slant, 9, 0}, {-9, 9, 0}},

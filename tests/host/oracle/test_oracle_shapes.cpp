@@ -25,7 +25,7 @@ std::optional<Hit> first_hit(const Scene& scene, const Ray& ray, std::uint32_t s
 
 TEST_CASE("oracle: a sphere is hit where the ray enters and where it leaves", "[oracle]") {
     Scene scene;
-    const std::uint32_t id = add_sphere(scene, {{1, 2, 3}, 2, false}, {});
+    const std::uint32_t id = add_sphere(scene, {{1, 2, 3}, 2}, {});
     const auto outside = first_hit(scene, {{1, 2, 13}, {0, 0, -2}});
     REQUIRE(outside);
     CHECK(outside->t == Approx(4));
@@ -46,12 +46,14 @@ TEST_CASE("oracle: a sphere is hit where the ray enters and where it leaves", "[
 
 TEST_CASE("oracle: surfaces seen from inside only let rays in", "[oracle]") {
     Scene scene;
-    add_sphere(scene, {{0, 0, 0}, 1, true}, {});
+    add_sphere(scene, {{0, 0, 0}, 1}, {});
+    scene.primitives.back().sides = Sides::back;
     const auto hit = first_hit(scene, {{0, 0, 5}, {0, 0, -1}});
     REQUIRE(hit);
     CHECK(hit->t == Approx(6));
     Scene pipe;
-    add_cone(pipe, {{0, 0, 0}, {0, 0, 2}, 1, 1, true}, {});
+    add_cone(pipe, {{0, 0, 0}, {0, 0, 2}, 1, 1}, {});
+    pipe.primitives.back().sides = Sides::back;
     const auto wall = first_hit(pipe, {{5, 0, 1}, {-1, 0, 0}});
     REQUIRE(wall);
     CHECK(wall->t == Approx(6));
@@ -94,7 +96,7 @@ TEST_CASE("oracle: a concave polygon is not hit in its notch", "[oracle]") {
 
 TEST_CASE("oracle: cones and cylinders are open", "[oracle]") {
     Scene scene;
-    const std::uint32_t id = add_cone(scene, {{0, 0, 0}, {0, 0, 2}, 2, 0, false}, {});
+    const std::uint32_t id = add_cone(scene, {{0, 0, 0}, {0, 0, 2}, 2, 0}, {});
     const auto hit = first_hit(scene, {{5, 0, 1}, {-1, 0, 0}});
     REQUIRE(hit);
     CHECK(hit->t == Approx(4));
@@ -112,7 +114,7 @@ TEST_CASE("oracle: cones and cylinders are open", "[oracle]") {
     REQUIRE(along);
     CHECK(along->t == Approx(0.25));
     Scene pipe;
-    add_cone(pipe, {{0, 0, 0}, {0, 3, 0}, 1, 1, false}, {});
+    add_cone(pipe, {{0, 0, 0}, {0, 3, 0}, 1, 1}, {});
     CHECK_FALSE(first_hit(pipe, {{0.5, -1, 0}, {0, 1, 0}}));
     const auto wall = first_hit(pipe, {{0, 1, 0}, {0, 0, 1}});
     REQUIRE(wall);
@@ -139,9 +141,9 @@ TEST_CASE("oracle: transformed spheres and cones", "[oracle]") {
         if (std::abs(glm::determinant(transform)) < 0.1) continue;
         Scene scene;
         if (round % 2 == 0) {
-            add_sphere(scene, {{0.1, 0.2, 0.3}, 0.8, false}, {}, transform);
+            add_sphere(scene, {{0.1, 0.2, 0.3}, 0.8}, {}, transform);
         } else {
-            add_cone(scene, {{0, 0, -1}, {0, 0, 1}, 0.4, 0.9, false}, {}, transform);
+            add_cone(scene, {{0, 0, -1}, {0, 0, 1}, 0.4, 0.9}, {}, transform);
         }
         const dvec3 origin = 5.0 * vector();
         const Ray ray{origin, vector() - origin};

@@ -104,7 +104,7 @@ TEST_CASE("oracle: transparent things in the way take their factor once a surfac
     CHECK(color_at_depth(scene, ray, 0).x == Approx(1));
     add_square(scene, 2, 1, glass({0.5F, 0.25F, 1}, 1.5F));
     CHECK(same(color_at_depth(scene, ray, 0), {0.5, 0.25, 1}));
-    add_sphere(scene, {{0, 0, 3.5}, 0.5, false}, glass(glm::vec3(0.5F), 1.5F));
+    add_sphere(scene, {{0, 0, 3.5}, 0.5}, glass(glm::vec3(0.5F), 1.5F));
     CHECK(same(color_at_depth(scene, ray, 0), {0.125, 0.0625, 0.25}));
     add_square(scene, 6, 1, matte(glm::vec3(1)));  // behind the light
     CHECK(color_at_depth(scene, ray, 0).x == Approx(0.125));
@@ -123,7 +123,7 @@ TEST_CASE("oracle: camera rays run from edge to edge of the image", "[oracle]") 
 
 TEST_CASE("oracle: pixels near an edge are found", "[oracle]") {
     Scene scene;  // the half plane x < 0; its edge runs between two columns, or through one's centres
-    scene.camera = {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 90};
+    scene.cameras[0] = {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 90};
     add_polygon(scene, {{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}}, emitting(glm::vec3(1)));
     CHECK(render(Oracle(scene), {16, 16}, 0, EdgeSearch::on).near_edge_count == 0);
     const Rendering odd = render(Oracle(scene), {15, 15}, 0, EdgeSearch::on);

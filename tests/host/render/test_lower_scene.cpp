@@ -34,8 +34,8 @@ Scene one_of_each(const glm::dmat4& world_from_object) {
     Scene scene;
     scene.materials.emplace_back();
     scene.transforms.push_back(world_from_object);
-    scene.spheres.push_back({{0.4293, 0.115031, 0.544331}, 0.0555556, false});
-    scene.cones.push_back({{0.1, 0.2, 0.3}, {0.1, 0.2, 1.7}, 0.3, 0.7, false});
+    scene.spheres.push_back({{0.4293, 0.115031, 0.544331}, 0.0555556});
+    scene.cones.push_back({{0.1, 0.2, 0.3}, {0.1, 0.2, 1.7}, 0.3, 0.7});
     scene.polygon_vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     scene.polygons.push_back({0, 4});
     scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -32,10 +32,10 @@ TEST_CASE("CSE 167: every command", "[scene]") {
     CHECK(scene.resolution.width == 64);
     CHECK(scene.resolution.height == 48);
     CHECK(scene.depth == 3);
-    CHECK(scene.camera.eye == glm::dvec3(0, -5, 2));
-    CHECK(scene.camera.look_at == glm::dvec3(0, 0, 0.5));
-    CHECK(scene.camera.up == glm::dvec3(0, 0, 1));
-    CHECK(scene.camera.fov_y == 45);
+    CHECK(scene.cameras[0].eye == glm::dvec3(0, -5, 2));
+    CHECK(scene.cameras[0].look_at == glm::dvec3(0, 0, 0.5));
+    CHECK(scene.cameras[0].up == glm::dvec3(0, 0, 1));
+    CHECK(scene.cameras[0].fov_y == 45);
     CHECK(scene.background == glm::vec3(0));
 
     REQUIRE(scene.lights.size() == 2);

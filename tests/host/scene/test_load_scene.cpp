@@ -51,10 +51,10 @@ std::string describe(const Scene& scene) {
     std::ostringstream text;
     text.precision(17);
     const auto vector = [&](const auto& v) { text << v.x << ' ' << v.y << ' ' << v.z << '\n'; };
-    vector(scene.camera.eye);
-    vector(scene.camera.look_at);
-    vector(scene.camera.up);
-    text << scene.camera.fov_y << ' ' << scene.resolution.width << ' ' << scene.resolution.height << ' '
+    vector(scene.cameras[0].eye);
+    vector(scene.cameras[0].look_at);
+    vector(scene.cameras[0].up);
+    text << scene.cameras[0].fov_y << ' ' << scene.resolution.width << ' ' << scene.resolution.height << ' '
          << scene.depth;
     vector(scene.background);
     for (const Light& light : scene.lights) {
@@ -78,7 +78,7 @@ std::string describe(const Scene& scene) {
         text << t.vertices[0] << t.vertices[1] << t.vertices[2] << t.normals[2];
     for (const Sphere& s : scene.spheres) {
         vector(s.center);
-        text << s.radius << s.inside_only << '\n';
+        text << s.radius << '\n';
     }
     for (const Cone& c : scene.cones) {
         vector(c.base);

@@ -11,10 +11,10 @@ namespace sahl::tests {
 TEST_CASE("NFF: every entity", "[scene]") {
     const Scene scene = load_scene(own_scene("all_entities.nff"));
     CHECK(scene.background == glm::vec3(0.1F, 0.2F, 0.3F));
-    CHECK(scene.camera.eye == glm::dvec3(0, -5, 2));
-    CHECK(scene.camera.look_at == glm::dvec3(0, 0, 0.5));
-    CHECK(scene.camera.up == glm::dvec3(0, 0, 1));
-    CHECK(scene.camera.fov_y == 45);
+    CHECK(scene.cameras[0].eye == glm::dvec3(0, -5, 2));
+    CHECK(scene.cameras[0].look_at == glm::dvec3(0, 0, 0.5));
+    CHECK(scene.cameras[0].up == glm::dvec3(0, 0, 1));
+    CHECK(scene.cameras[0].fov_y == 45);
     CHECK(scene.resolution.width == 64);
     CHECK(scene.resolution.height == 48);
     CHECK(scene.depth == 4);
@@ -58,16 +58,16 @@ TEST_CASE("NFF: every entity", "[scene]") {
     REQUIRE(scene.spheres.size() == 2);
     CHECK(scene.spheres[0].center == glm::dvec3(0, 0, 0.5));
     CHECK(scene.spheres[0].radius == 0.5);
-    CHECK_FALSE(scene.spheres[0].inside_only);
+    CHECK(scene.primitives[0].sides == Sides::both);
     CHECK(scene.spheres[1].radius == 20);
-    CHECK(scene.spheres[1].inside_only);
+    CHECK(scene.primitives[1].sides == Sides::back);
 
     REQUIRE(scene.cones.size() == 1);
     CHECK(scene.cones[0].base == glm::dvec3(1, 0, 0));
     CHECK(scene.cones[0].base_radius == 0.3);
     CHECK(scene.cones[0].apex == glm::dvec3(1, 0, 1));
     CHECK(scene.cones[0].apex_radius == 0.1);
-    CHECK_FALSE(scene.cones[0].inside_only);
+    CHECK(scene.primitives[2].sides == Sides::both);
 
     REQUIRE(scene.polygons.size() == 1);
     CHECK(scene.polygons[0].first_vertex == 0);
@@ -108,8 +108,8 @@ TEST_CASE("NFF: layout, order and defaults", "[scene]") {
         "f 1 1 1 1 0 0 0 1 s 0 0 0 1 s 1 1 1\n\n2 b 0 0 1");
     CHECK(scene.resolution.width == 3);
     CHECK(scene.resolution.height == 5);
-    CHECK(scene.camera.eye == glm::dvec3(1, -0.5, 0));
-    CHECK(scene.camera.fov_y == 30);
+    CHECK(scene.cameras[0].eye == glm::dvec3(1, -0.5, 0));
+    CHECK(scene.cameras[0].fov_y == 30);
     CHECK(scene.spheres.size() == 2);
     CHECK(scene.background == glm::vec3(0, 0, 1));
     CHECK(parse_nff(nff_view).background == glm::vec3(0));
@@ -128,13 +128,16 @@ TEST_CASE("NFF: cones and cylinders", "[scene]") {
     const auto cone = [](const std::string& text) {
         return parse_nff(nff_view + "f 1 1 1 1 0 0 0 1\n" + text).cones.at(0);
     };
+    const auto sides = [](const std::string& text) {
+        return parse_nff(nff_view + "f 1 1 1 1 0 0 0 1\n" + text).primitives.at(0).sides;
+    };
     CHECK(cone("c 0 0 0 2 0 0 5 2").apex_radius == 2);
     CHECK(cone("c 0 0 0 2 0 0 5 0").apex_radius == 0);
     CHECK(cone("c 0 0 0 0 0 0 5 2").base_radius == 0);
-    CHECK_FALSE(cone("c 0 0 0 2 0 0 5 0").inside_only);
-    CHECK(cone("c 0 0 0 -2 0 0 5 -1").inside_only);
+    CHECK(sides("c 0 0 0 2 0 0 5 0") == Sides::both);
+    CHECK(sides("c 0 0 0 -2 0 0 5 -1") == Sides::back);
     CHECK(cone("c 0 0 0 -2 0 0 5 -1").base_radius == 2);
-    CHECK(cone("c 0 0 0 -2 0 0 5 0").inside_only);
+    CHECK(sides("c 0 0 0 -2 0 0 5 0") == Sides::back);
     for (const std::string bad : {"c 0 0 0 2 0 0 5 -1", "c 0 0 0 -2 0 0 5 1", "c 0 0 0 0 0 0 5 0",
                                   "c 1 2 3 1 1 2 3 2", "c 0 0 0 1e-20 0 0 5 1"}) {
         INFO(bad);

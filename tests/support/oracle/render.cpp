@@ -51,7 +51,7 @@ Rendering render(const Oracle& oracle, Resolution resolution, int depth, EdgeSea
 
     tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x) {
-            const Ray ray = camera_ray(oracle.scene().camera, resolution, static_cast<double>(x) + 0.5,
+            const Ray ray = camera_ray(oracle.scene().cameras[0], resolution, static_cast<double>(x) + 0.5,
                                        static_cast<double>(y) + 0.5);
             const PathRecord record = oracle.trace(ray, depth);
             for (std::size_t generation = 0; generation < record.counts.size(); ++generation) {

@@ -59,7 +59,9 @@ int nearest_to_zero(const double roots[2]) { return std::abs(roots[0]) <= std::a
 }  // namespace
 
 Shape::Shape(const Scene& scene, const Primitive& primitive)
-    : kind_(primitive.kind), identity_(scene.transforms[primitive.transform] == glm::dmat4(1)) {
+    : kind_(primitive.kind),
+      identity_(scene.transforms[primitive.transform] == glm::dmat4(1)),
+      sides_(primitive.sides) {
     const glm::dmat4& world_from_object = scene.transforms[primitive.transform];
     object_from_world_ = glm::inverse(world_from_object);
     normal_matrix_ = glm::transpose(glm::dmat3(object_from_world_));
@@ -87,7 +89,6 @@ Shape::Shape(const Scene& scene, const Primitive& primitive)
         }
         case PrimitiveKind::sphere: {
             const Sphere& sphere = scene.spheres[primitive.index];
-            inside_only_ = sphere.inside_only;
             points_ = {sphere.center};
             radii_[0] = sphere.radius;
             reach = sphere.radius;
@@ -95,13 +96,15 @@ Shape::Shape(const Scene& scene, const Primitive& primitive)
         }
         case PrimitiveKind::cone: {
             const Cone& cone = scene.cones[primitive.index];
-            inside_only_ = cone.inside_only;
             points_ = {cone.base, cone.apex};
             radii_[0] = cone.base_radius;
             radii_[1] = cone.apex_radius;
             reach = std::max(cone.base_radius, cone.apex_radius);
             break;
         }
+        case PrimitiveKind::disc:
+        case PrimitiveKind::box:
+            break;
     }
 
     std::vector<dvec3> world_points;
@@ -146,11 +149,15 @@ Crossings Shape::cross(const Ray& world_ray, bool starts_here) const {
         case PrimitiveKind::cone:
             result = cross_cone(ray, starts_here);
             break;
+        case PrimitiveKind::disc:
+        case PrimitiveKind::box:
+            break;
     }
     int kept = 0;
     for (int i = 0; i < result.count; ++i) {
         Crossing crossing = result.at[i];
-        if (inside_only_ && !(glm::dot(ray.direction, crossing.ng) > 0)) continue;
+        const bool from_behind = glm::dot(ray.direction, crossing.ng) > 0;
+        if (sides_ == (from_behind ? Sides::front : Sides::back)) continue;
         crossing.ng = glm::normalize(normal_matrix_ * crossing.ng);
         crossing.ns = smooth_ ? glm::normalize(normal_matrix_ * crossing.ns) : crossing.ng;
         result.at[kept++] = crossing;

@@ -57,7 +57,7 @@ private:
     PrimitiveKind kind_;
     bool identity_;
     bool smooth_ = false;
-    bool inside_only_ = false;
+    Sides sides_;
     glm::dmat4 object_from_world_{1};
     glm::dmat3 normal_matrix_{1};      ///< inverse transpose, world from object
     std::vector<glm::dvec3> points_;   ///< corners; sphere: centre; cone: base, apex
