@@ -23,6 +23,7 @@ constexpr int most_samples = 16384;  // more could overflow the film's fixed poi
 
 struct RenderOptions {
     std::string scene;
+    LoadOptions loading;
     std::optional<std::string> output;
     std::optional<Resolution> size;
     std::optional<std::vector<int>> depths;
@@ -156,7 +157,7 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
 }
 
 ExitCode render(const RenderOptions& options, const CommonOptions& common) {
-    const Scene scene = load_scene(options.scene);
+    const Scene scene = load_scene(options.scene, options.loading);
     RenderSettings settings;
     settings.resolution = options.size.value_or(scene.resolution);
     settings.spp = options.spp;
@@ -215,36 +216,24 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
 }
 
 void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
-    add_value(
-        command, "--transfer", "CURVE",
-        [&encoding](const std::string& text) {
-            encoding.transfer = read_choice<Transfer>(
-                "--transfer", text, {{"srgb", Transfer::srgb}, {"linear", Transfer::linear}});
-        },
-        "srgb or linear (default: srgb for 8 and 16 bits, linear for floats)");
-    add_value(
-        command, "--rounding", "RULE",
-        [&encoding](const std::string& text) {
-            encoding.rounding = read_choice<Rounding>(
-                "--rounding", text, {{"round", Rounding::round}, {"floor", Rounding::floor}});
-        },
-        "round or floor, for 8 and 16 bits (default: round)");
+    add_choice<Transfer>(command, "--transfer", "CURVE", encoding.transfer,
+                         {{"srgb", Transfer::srgb}, {"linear", Transfer::linear}},
+                         "(default: srgb for 8 and 16 bits, linear for floats)");
+    add_choice<Rounding>(command, "--rounding", "RULE", encoding.rounding,
+                         {{"round", Rounding::round}, {"floor", Rounding::floor}},
+                         "for 8 and 16 bits (default: round)");
     add_value(
         command, "--exposure", "STOPS",
         [&encoding](const std::string& text) {
             encoding.exposure = static_cast<float>(read_number("--exposure", text, -most_stops, most_stops));
         },
         "makes the image 2^STOPS as bright (default: 0)");
-    add_value(
-        command, "--pixel-type", "TYPE",
-        [&encoding](const std::string& text) {
-            encoding.pixel_type = read_choice<PixelType>("--pixel-type", text,
-                                                         {{"half", PixelType::half},
-                                                          {"float", PixelType::float32},
-                                                          {"uint8", PixelType::uint8},
-                                                          {"uint16", PixelType::uint16}});
-        },
-        "half, float, uint8 or uint16 (default: the format's)");
+    add_choice<PixelType>(command, "--pixel-type", "TYPE", encoding.pixel_type,
+                          {{"half", PixelType::half},
+                           {"float", PixelType::float32},
+                           {"uint8", PixelType::uint8},
+                           {"uint16", PixelType::uint16}},
+                          "(default: the format's)");
 }
 
 }  // namespace
@@ -252,11 +241,14 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
 Command add_render_command(CLI::App& app, CommonOptions& common) {
     const auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "renders a scene");
-    command->add_option("SCENE", options->scene, "scene file: .nff or .test")->required()->type_name("FILE");
+    command->add_option("SCENE", options->scene, "scene file: .json, .nff or .test")
+        ->required()
+        ->type_name("FILE");
     add_value(
         *command, "-o,--output", "FILE",
         [&options = *options](const std::string& text) { options.output = text; },
         "image; {depth} stands for the depth (default: the scene's name, .png, here)");
+    add_scene_options(*command, options->loading);
     add_image_options(*command, *options);
     add_encoding_options(*command, options->encoding);
     add_device_options(*command, common);

@@ -139,7 +139,9 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     for (const Command& command : commands) {
         if (command.app->parsed()) return command.run();
     }
-    throw Error(ExitCode::usage, "which command? render, compare or devices" + help_hint(app));
+    std::vector<std::string> names;
+    for (const Command& command : commands) names.push_back(command.app->get_name());
+    throw Error(ExitCode::usage, "which command? " + either(names) + help_hint(app));
 }
 
 /// Says it on standard error, and as an event for who reads those. Returns the exit status.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace sahl::cli {
 
@@ -11,7 +12,37 @@ constexpr int most_threads = 1024;
 constexpr int most_pixels_a_side = 65536;
 constexpr int most_generations = 64;
 
+/// CLI11's options have no room for them.
+std::map<const CLI::Option*, OptionWords>& all_words() {
+    static std::map<const CLI::Option*, OptionWords> words;
+    return words;
+}
+
+std::pair<std::string, std::string> read_assignment(std::string_view option, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+        refuse(option, text, "NAME=VALUE, such as radius=1.5 or color=1,0,0,");
+    }
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 }  // namespace
+
+const OptionWords& words_of(const CLI::Option& option) {
+    static const OptionWords none;
+    const auto found = all_words().find(&option);
+    return found == all_words().end() ? none : found->second;
+}
+
+void set_words(const CLI::Option& option, OptionWords words) { all_words()[&option] = std::move(words); }
+
+std::string either(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    }
+    return text;
+}
 
 void refuse(std::string_view option, std::string_view text, std::string_view wanted) {
     throw Error(ExitCode::usage, fmt::format("{} '{}': {} is wanted", option, text, wanted));
@@ -36,15 +67,27 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group("Messages");
     app.add_flag("-q,--quiet", options.quiet, "errors only")->group("Messages");
     app.add_flag("-v,--verbose", options.verbose, "more about what happens")->group("Messages");
-    add_value(
-        app, "--color", "WHEN",
-        [&options](const std::string& text) {
-            options.color = read_choice<ColorMode>(
-                "--color", text,
-                {{"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}});
-        },
-        "auto, always or never (default: auto, on a terminal without NO_COLOR)")
+    add_choice<ColorMode>(
+        app, "--color", "WHEN", options.color,
+        {{"auto", ColorMode::automatic}, {"always", ColorMode::always}, {"never", ColorMode::never}},
+        "(default: auto, on a terminal without NO_COLOR)")
         ->group("Messages");
+}
+
+void add_scene_options(CLI::App& app, LoadOptions& options) {
+    const auto set = [&options](const std::string& text) {
+        auto assignment = read_assignment("--set", text);
+        for (const auto& [name, value] : options.parameters) {
+            if (name == assignment.first) refuse("--set", text, "each name once");
+        }
+        options.parameters.push_back(std::move(assignment));
+    };
+    add_values(app, "--set", "NAME=VALUE", set, "a parameter of a Sahl scene; may be given several times")
+        ->group("Scene");
+    add_value(
+        app, "--asset-root", "DIR", [&options](const std::string& text) { options.asset_root = text; },
+        "all files that the scene names lie in here (default: the scene's folder)")
+        ->group("Scene");
 }
 
 double read_number(std::string_view option, std::string_view text, double least, double most) {

@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -33,12 +32,38 @@ struct CommonOptions {
 void add_device_options(CLI::App& app, CommonOptions& options);
 void add_common_options(CLI::App& app, CommonOptions& options);
 
+/// `--set` and `--asset-root`, of all commands that load a scene.
+void add_scene_options(CLI::App& app, LoadOptions& options);
+
 /// Adds an option whose text `read` turns into its value; `read` throws Error(usage).
 template <class Read>
 CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& value_name, Read read,
                        const std::string& help) {
     return app.add_option_function<std::string>(names, read, help)->type_name(value_name);
 }
+
+/// The same for an option that may be given several times; `read` gets one text at a time.
+template <class Read>
+CLI::Option* add_values(CLI::App& app, const std::string& names, const std::string& value_name, Read read,
+                        const std::string& help) {
+    const auto read_all = [read](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) read(text);
+    };
+    return app.add_option_function<std::vector<std::string>>(names, read_all, help)
+        ->type_name(value_name)
+        ->allow_extra_args(false);
+}
+
+/// The words that an option's value may be, for completion; none where it may be any text.
+struct OptionWords {
+    std::vector<std::string> words{};
+    bool list = false;  ///< several, separated by commas
+};
+const OptionWords& words_of(const CLI::Option& option);
+void set_words(const CLI::Option& option, OptionWords words);
+
+/// "a, b or c".
+std::string either(const std::vector<std::string>& words);
 
 /// Error(usage): "OPTION 'TEXT': WANTED is wanted".
 [[noreturn]] void refuse(std::string_view option, std::string_view text, std::string_view wanted);
@@ -57,16 +82,36 @@ T read_whole(std::string_view option, std::string_view text, T least, T most) {
 /// A finite decimal number from `least` to `most`.
 double read_number(std::string_view option, std::string_view text, double least, double most);
 
+/// The words for the values of a choice.
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+template <class T>
+std::vector<std::string> words_of(const Choices<T>& choices) {
+    std::vector<std::string> words;
+    for (const auto& choice : choices) words.push_back(choice.first);
+    return words;
+}
+
 /// One of a few words.
 template <class T>
-T read_choice(std::string_view option, std::string_view text,
-              std::initializer_list<std::pair<const char*, T>> choices) {
-    std::string names;
-    for (const auto& [name, value] : choices) {
-        if (text == name) return value;
-        names += (names.empty() ? "" : ", ") + std::string(name);
+T read_choice(std::string_view option, std::string_view text, const Choices<T>& choices) {
+    for (const auto& [word, value] : choices) {
+        if (text == word) return value;
     }
-    refuse(option, text, "one of " + names);
+    refuse(option, text, fmt::format("one of {}", fmt::join(words_of(choices), ", ")));
+}
+
+/// Adds an option whose value is one of a few words; `help` goes on after "a, b or c ".
+template <class T, class Target>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::string& value_name, Target& target,
+                        const Choices<T>& choices, const std::string& help) {
+    CLI::Option* option = add_value(
+        app, name, value_name,
+        [name, choices, &target](const std::string& text) { target = read_choice(name, text, choices); },
+        either(words_of(choices)) + " " + help);
+    set_words(*option, {words_of(choices)});
+    return option;
 }
 
 /// "640x480".
