@@ -98,7 +98,7 @@ void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t 
         if (blur > object.size) continue;
         const oracle::Ray exact{surface.position, dvec3(children[k].direction)};
         const auto wanted =
-            oracle.closest_hit(exact, 1e-6 * object.size, oracle::infinity, children[k].exclude);
+            oracle.closest_hit(exact, 1e-6 * object.size, oracle::infinity, {children[k].exclude, 0});
         if (next[k].hit() && t < 0.5 * (wanted ? wanted->t : oracle::infinity)) {
             const bool on_edge = next[k].primitive != children[k].exclude && t < blur;
             score.edge_hits += on_edge;

@@ -20,7 +20,7 @@ bool same(const dvec3& a, const dvec3& b, double tolerance = 1e-12) {
 }
 
 std::optional<Hit> first_hit(const Scene& scene, const Ray& ray, std::uint32_t start = no_primitive) {
-    return Oracle(scene).closest_hit(ray, 0, infinity, start);
+    return Oracle(scene).closest_hit(ray, 0, infinity, {start, 0});
 }
 
 TEST_CASE("oracle: a sphere is hit where the ray enters and where it leaves", "[oracle]") {
@@ -125,7 +125,7 @@ TEST_CASE("oracle: of two hits at the same distance the lower id wins", "[oracle
     Scene scene;
     add_square(scene, 0, 1, {});
     add_square(scene, 0, 1, {});
-    CHECK(first_hit(scene, {{0.1, 0.2, 1}, {0, 0, -1}})->primitive == 0);
+    CHECK(first_hit(scene, {{0.1, 0.2, 1}, {0, 0, -1}})->id.primitive == 0);
 }
 
 // Any affine transform: points lie on the surface f = 0 and normals along its gradient.

@@ -1,7 +1,15 @@
 #include "tests/support/oracle/build_scene.h"
 
+#include <string>
+
 namespace sahl::oracle {
 namespace {
+
+std::uint32_t add_transform(Scene& scene, const glm::dmat4& transform) {
+    if (transform == glm::dmat4(1)) return 0;
+    scene.transforms.push_back(transform);
+    return static_cast<std::uint32_t>(scene.transforms.size() - 1);
+}
 
 std::uint32_t add_primitive(Scene& scene, PrimitiveKind kind, std::size_t index, const Material& material,
                             const glm::dmat4& world_from_object) {
@@ -10,11 +18,9 @@ std::uint32_t add_primitive(Scene& scene, PrimitiveKind kind, std::size_t index,
     primitive.index = static_cast<std::uint32_t>(index);
     primitive.material = static_cast<std::uint32_t>(scene.materials.size());
     scene.materials.push_back(material);
-    if (world_from_object != glm::dmat4(1)) {
-        primitive.transform = static_cast<std::uint32_t>(scene.transforms.size());
-        scene.transforms.push_back(world_from_object);
-    }
+    primitive.transform = add_transform(scene, world_from_object);
     scene.primitives.push_back(primitive);
+    if (!scene.groups.empty()) ++scene.groups.back().primitive_count;
     return static_cast<std::uint32_t>(scene.primitives.size() - 1);
 }
 
@@ -59,6 +65,35 @@ std::uint32_t add_polygon(Scene& scene, const std::vector<glm::vec3>& corners, c
                          world_from_object);
 }
 
+std::uint32_t add_disc(Scene& scene, const Disc& disc, const Material& material,
+                       const glm::dmat4& world_from_object) {
+    scene.discs.push_back(disc);
+    return add_primitive(scene, PrimitiveKind::disc, scene.discs.size() - 1, material, world_from_object);
+}
+
+std::uint32_t add_box(Scene& scene, const Box& box, const Material& material,
+                      const glm::dmat4& world_from_object) {
+    scene.boxes.push_back(box);
+    return add_primitive(scene, PrimitiveKind::box, scene.boxes.size() - 1, material, world_from_object);
+}
+
+std::uint32_t add_group(Scene& scene) {
+    Group group;
+    group.name = "group " + std::to_string(scene.groups.size());
+    group.first_primitive = static_cast<std::uint32_t>(scene.primitives.size());
+    scene.groups.push_back(group);
+    return static_cast<std::uint32_t>(scene.groups.size() - 1);
+}
+
+void add_instance(Scene& scene, std::uint32_t group, const glm::dmat4& transform) {
+    scene.instances.push_back({group, add_transform(scene, transform)});
+}
+
+void add_instance(Scene& scene, std::uint32_t parent, std::uint32_t group, const glm::dmat4& transform) {
+    const std::uint32_t index = add_transform(scene, transform);
+    scene.groups[parent].instances.push_back({group, index});
+}
+
 std::uint32_t add_square(Scene& scene, float height, float half, const Material& material,
                          const glm::dmat4& world_from_object) {
     return add_polygon(
@@ -67,11 +102,32 @@ std::uint32_t add_square(Scene& scene, float height, float half, const Material&
 }
 
 Light point_light(const glm::dvec3& position, const glm::vec3& color, const glm::vec3& attenuation) {
-    return {LightKind::point, position, color, attenuation};
+    Light light;
+    light.position = position;
+    light.color = color;
+    light.attenuation = attenuation;
+    return light;
 }
 
 Light directional_light(const glm::dvec3& towards, const glm::vec3& color) {
-    return {LightKind::directional, towards, color, {1, 0, 0}};
+    Light light = point_light(towards, color);
+    light.kind = LightKind::directional;
+    return light;
+}
+
+Light spot_light(const glm::dvec3& position, const glm::dvec3& direction, double inner_angle,
+                 double outer_angle, const glm::vec3& color) {
+    Light light = point_light(position, color);
+    light.kind = LightKind::spot;
+    light.direction = direction;
+    light.inner_angle = inner_angle;
+    light.outer_angle = outer_angle;
+    return light;
+}
+
+std::uint32_t add_texture(Scene& scene, const Texture& texture) {
+    scene.textures.push_back(texture);
+    return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
 Material emitting(const glm::vec3& emission) {

@@ -18,13 +18,23 @@ namespace sahl::oracle {
 inline constexpr std::uint32_t no_primitive = 0xffffffffU;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// A primitive in its place.
+struct SurfaceId {
+    std::uint32_t primitive = no_primitive;
+    std::uint32_t instance = 0;  ///< 0: the world's own; else as Aov::instance_id counts
+
+    friend bool operator==(const SurfaceId&, const SurfaceId&) = default;
+};
+
 struct Hit {
     double t = 0;
     glm::dvec3 position{0};
     glm::dvec3 ng{0};  ///< unit, front or outward
     glm::dvec3 ns{0};  ///< unit, not turned to the ray
-    glm::dvec2 uv{0};  ///< barycentrics of a triangle's vertices 1 and 2
-    std::uint32_t primitive = no_primitive;
+    glm::dvec2 uv{0};
+    glm::dvec2 barycentric{0};  ///< of a triangle's vertices 1 and 2
+    SurfaceId id;
+    int part = 0;              ///< Crossing::part
     double edge_distance = 0;  ///< Crossings::margin
 };
 
@@ -46,20 +56,28 @@ public:
     /// Keeps a reference to `scene`.
     explicit Oracle(const Scene& scene);
 
-    /// The nearest crossing with t_min < t < t_max; of equal ones the lowest primitive.
-    /// `start`: the primitive the ray starts on.
+    /// The nearest crossing with t_min < t < t_max; of equal ones the lowest (instance, primitive).
+    /// `start`: what the ray starts on.
     std::optional<Hit> closest_hit(const Ray& ray, double t_min = 0, double t_max = infinity,
-                                   std::uint32_t start = no_primitive) const;
+                                   const SurfaceId& start = {}) const;
 
     /// The part of the light that passes 0 < t < t_max: 0 behind an opaque surface, else the
     /// product of `transmission` over all surfaces crossed; `crossed` counts those.
-    glm::dvec3 transmittance(const Ray& ray, double t_max, std::uint32_t start, int& crossed) const;
+    glm::dvec3 transmittance(const Ray& ray, double t_max, const SurfaceId& start, int& crossed) const;
 
     /// Least Crossings::margin of the ray's line over all primitives.
     double edge_distance(const Ray& ray) const;
 
     /// Whitted's ray tree of one camera ray, `depth` generations after it.
     PathRecord trace(const Ray& ray, int depth) const;
+
+    const Material& material_of(const Hit& hit) const {
+        return scene_.materials[scene_.primitives[hit.id.primitive].material];
+    }
+
+    /// The material's colour `color` with its texture where the hit is.
+    glm::dvec3 color_at(const Hit& hit, glm::vec3 Material::*color,
+                        std::uint32_t MaterialTextures::*texture) const;
 
     const Scene& scene() const { return scene_; }
 
@@ -68,9 +86,11 @@ private:
     void trace(const Branch& branch, int depth, PathRecord& record) const;
     glm::dvec3 direct_light(const Branch& branch, const Hit& hit, const glm::dvec3& ns,
                             PathRecord& record) const;
+    glm::dvec3 color_at(const Hit& hit, glm::vec3 Material::*color, std::uint32_t MaterialTextures::*texture,
+                        PathRecord& record) const;
 
     const Scene& scene_;
-    std::vector<Shape> shapes_;
+    std::vector<PlacedShape> shapes_;
 };
 
 }  // namespace sahl::oracle

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -10,7 +9,6 @@
 namespace sahl::oracle {
 namespace {
 
-using glm::dvec2;
 using glm::dvec3;
 
 /// Twice the vector area (Newell), relative to the first corner.
@@ -22,47 +20,25 @@ dvec3 vector_area(const std::vector<dvec3>& points) {
     return area;
 }
 
-/// Axes that stay when the largest component of `normal` is dropped.
-void projection_axes(const dvec3& normal, int& first, int& second) {
-    const dvec3 size = glm::abs(normal);
-    const int dropped = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    first = (dropped + 1) % 3;
-    second = (dropped + 2) % 3;
+/// Calls visit(instance's world-from-group matrix, its group) for the instances of a list and those
+/// within, each before its own.
+template <class Visit>
+void for_each_instance(const Scene& scene, const std::vector<Instance>& instances,
+                       const glm::dmat4& world_from_space, const Visit& visit) {
+    for (const Instance& instance : instances) {
+        const Group& group = scene.groups[instance.group];
+        const glm::dmat4 world_from_group = world_from_space * scene.transforms[instance.transform];
+        visit(world_from_group, group);
+        for_each_instance(scene, group.instances, world_from_group, visit);
+    }
 }
-
-double cross_2d(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-double distance_to_segment(const dvec2& point, const dvec2& a, const dvec2& b) {
-    const dvec2 edge = b - a;
-    const double length_squared = glm::dot(edge, edge);
-    const double s =
-        length_squared > 0 ? std::clamp(glm::dot(point - a, edge) / length_squared, 0.0, 1.0) : 0;
-    return glm::length(point - a - s * edge);
-}
-
-/// Real roots of a t² + 2 b t + c = 0 in long double; false if there are none. A root that does
-/// not exist because a = 0 is infinite.
-bool solve(long double a, long double b, long double c, double roots[2]) {
-    const long double discriminant = b * b - a * c;
-    if (!(discriminant >= 0)) return false;
-    const long double q = -(b + std::copysign(std::sqrt(discriminant), b));
-    const double infinity = std::numeric_limits<double>::infinity();
-    roots[0] = a != 0 ? static_cast<double>(q / a) : infinity;
-    roots[1] = q != 0 ? static_cast<double>(c / q) : roots[0];
-    if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
-    return true;
-}
-
-/// Index of the root at the origin of a ray that starts on the surface.
-int nearest_to_zero(const double roots[2]) { return std::abs(roots[0]) <= std::abs(roots[1]) ? 0 : 1; }
 
 }  // namespace
 
-Shape::Shape(const Scene& scene, const Primitive& primitive)
-    : kind_(primitive.kind),
-      identity_(scene.transforms[primitive.transform] == glm::dmat4(1)),
-      sides_(primitive.sides) {
-    const glm::dmat4& world_from_object = scene.transforms[primitive.transform];
+Shape::Shape(const Scene& scene, const Primitive& primitive, const glm::dmat4& world_from_space)
+    : kind_(primitive.kind), sides_(primitive.sides) {
+    const glm::dmat4 world_from_object = world_from_space * scene.transforms[primitive.transform];
+    identity_ = world_from_object == glm::dmat4(1);
     object_from_world_ = glm::inverse(world_from_object);
     normal_matrix_ = glm::transpose(glm::dmat3(object_from_world_));
 
@@ -71,10 +47,11 @@ Shape::Shape(const Scene& scene, const Primitive& primitive)
         case PrimitiveKind::triangle: {
             const Triangle& triangle = scene.triangles[primitive.index];
             smooth_ = triangle.smooth;
-            for (const std::uint32_t vertex : triangle.vertices) points_.emplace_back(scene.vertices[vertex]);
-            if (smooth_) {
-                for (const std::uint32_t normal : triangle.normals)
-                    normals_.push_back(glm::normalize(dvec3(scene.normals[normal])));
+            has_uv_ = triangle.has_uv;
+            for (std::size_t i = 0; i < 3; ++i) {
+                points_.emplace_back(scene.vertices[triangle.vertices[i]]);
+                if (smooth_) normals_.push_back(glm::normalize(dvec3(scene.normals[triangle.normals[i]])));
+                if (has_uv_) uvs_.emplace_back(scene.uvs[triangle.uvs[i]]);
             }
             plane_normal_ = glm::normalize(vector_area(points_));
             break;
@@ -99,14 +76,29 @@ Shape::Shape(const Scene& scene, const Primitive& primitive)
             points_ = {cone.base, cone.apex};
             radii_[0] = cone.base_radius;
             radii_[1] = cone.apex_radius;
+            solid_ = cone.capped;
             reach = std::max(cone.base_radius, cone.apex_radius);
             break;
         }
-        case PrimitiveKind::disc:
-        case PrimitiveKind::box:
+        case PrimitiveKind::disc: {
+            const Disc& disc = scene.discs[primitive.index];
+            points_ = {disc.center};
+            radii_[0] = disc.radius;
+            plane_normal_ = glm::normalize(disc.normal);
+            reach = disc.radius;
             break;
+        }
+        case PrimitiveKind::box: {
+            const Box& box = scene.boxes[primitive.index];
+            points_ = {box.lo, box.hi};
+            reach = glm::distance(box.lo, box.hi) / 2;
+            break;
+        }
     }
+    find_bound(world_from_object, reach);
+}
 
+void Shape::find_bound(const glm::dmat4& world_from_object, double reach) {
     std::vector<dvec3> world_points;
     for (const dvec3& point : points_) {
         world_points.emplace_back(world_from_object * glm::dvec4(point, 1));
@@ -128,31 +120,12 @@ bool Shape::may_cross(const Ray& ray) const {
 }
 
 Crossings Shape::cross(const Ray& world_ray, bool starts_here) const {
-    const bool planar = kind_ == PrimitiveKind::triangle || kind_ == PrimitiveKind::polygon;
-    if (planar && starts_here) return {};
     Ray ray = world_ray;
     if (!identity_) {
         ray.origin = dvec3(object_from_world_ * glm::dvec4(world_ray.origin, 1));
         ray.direction = glm::dmat3(object_from_world_) * world_ray.direction;
     }
-    Crossings result;
-    switch (kind_) {
-        case PrimitiveKind::triangle:
-            result = cross_triangle(ray);
-            break;
-        case PrimitiveKind::polygon:
-            result = cross_polygon(ray);
-            break;
-        case PrimitiveKind::sphere:
-            result = cross_sphere(ray, starts_here);
-            break;
-        case PrimitiveKind::cone:
-            result = cross_cone(ray, starts_here);
-            break;
-        case PrimitiveKind::disc:
-        case PrimitiveKind::box:
-            break;
-    }
+    Crossings result = cross_in_object_space(ray, starts_here);
     int kept = 0;
     for (int i = 0; i < result.count; ++i) {
         Crossing crossing = result.at[i];
@@ -166,113 +139,45 @@ Crossings Shape::cross(const Ray& world_ray, bool starts_here) const {
     return result;
 }
 
-// Plane, then barycentric coordinates by areas.
-Crossings Shape::cross_triangle(const Ray& ray) const {
-    Crossings result;
-    const double across = glm::dot(plane_normal_, ray.direction);
-    const double t = glm::dot(plane_normal_, points_[0] - ray.origin) / across;
-    if (!std::isfinite(t)) return result;
-    const dvec3 point = ray.origin + t * ray.direction;
-    const dvec3 whole = glm::cross(points_[1] - points_[0], points_[2] - points_[0]);
-    double barycentrics[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-        const dvec3 part = glm::cross(points_[(i + 1) % 3] - point, points_[(i + 2) % 3] - point);
-        barycentrics[i] = glm::dot(part, whole) / glm::dot(whole, whole);
+Crossings Shape::cross_in_object_space(const Ray& ray, bool starts_here) const {
+    switch (kind_) {
+        case PrimitiveKind::triangle:
+            return starts_here ? Crossings{} : cross_triangle(ray);
+        case PrimitiveKind::polygon:
+            return starts_here ? Crossings{} : cross_polygon(ray);
+        case PrimitiveKind::disc:
+            return starts_here ? Crossings{} : cross_disc(ray);
+        case PrimitiveKind::sphere:
+            return cross_sphere(ray, starts_here);
+        case PrimitiveKind::cone:
+            return solid_ ? cross_solid_cone(ray, starts_here) : cross_cone(ray, starts_here);
+        case PrimitiveKind::box:
+            return cross_box(ray, starts_here);
     }
-    const double least = std::min({barycentrics[0], barycentrics[1], barycentrics[2]});
-    result.margin = std::abs(least);
-    if (!(least >= 0)) return result;
-    Crossing& crossing = result.at[result.count++];
-    crossing = {t, plane_normal_, plane_normal_, {barycentrics[1], barycentrics[2]}};
-    if (smooth_) {
-        crossing.ns = dvec3(0);
-        for (std::size_t i = 0; i < 3; ++i) crossing.ns += barycentrics[i] * normals_[i];
-    }
-    return result;
+    return {};
 }
 
-// Plane, then the winding number of the outline (Hormann, Agathos 2001).
-Crossings Shape::cross_polygon(const Ray& ray) const {
-    Crossings result;
-    const double t =
-        glm::dot(plane_normal_, points_[0] - ray.origin) / glm::dot(plane_normal_, ray.direction);
-    if (!std::isfinite(t)) return result;
-    int first = 0;
-    int second = 0;
-    projection_axes(plane_normal_, first, second);
-    const dvec3 spot = ray.origin + t * ray.direction;
-    const dvec2 point(spot[first], spot[second]);
-    int winding = 0;
-    double nearest = std::numeric_limits<double>::infinity();
-    double perimeter = 0;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-        const dvec3& here = points_[i];
-        const dvec3& next = points_[(i + 1) % points_.size()];
-        const dvec2 a(here[first], here[second]);
-        const dvec2 b(next[first], next[second]);
-        const double side = cross_2d(b - a, point - a);
-        if (a.y <= point.y && b.y > point.y && side > 0) ++winding;
-        if (a.y > point.y && b.y <= point.y && side < 0) --winding;
-        nearest = std::min(nearest, distance_to_segment(point, a, b));
-        perimeter += glm::distance(a, b);
-    }
-    result.margin = nearest / perimeter;
-    if (winding != 0) result.at[result.count++] = {t, plane_normal_, plane_normal_, {}};
-    return result;
+std::vector<PlacedShape> place_shapes(const Scene& scene) {
+    std::vector<PlacedShape> shapes;
+    std::uint32_t number = 0;
+    const auto add = [&](const glm::dmat4& placement, std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t id = first; id < first + count; ++id)
+            shapes.push_back({Shape(scene, scene.primitives[id], placement), id, number});
+    };
+    add(glm::dmat4(1), 0, world_primitive_count(scene));
+    for_each_instance(scene, scene.instances, glm::dmat4(1),
+                      [&](const glm::dmat4& placement, const Group& group) {
+                          ++number;
+                          add(placement, group.first_primitive, group.primitive_count);
+                      });
+    return shapes;
 }
 
-Crossings Shape::cross_sphere(const Ray& ray, bool starts_here) const {
-    Crossings result;
-    const dvec3 from_center = ray.origin - points_[0];
-    const double length_squared = glm::dot(ray.direction, ray.direction);
-    const dvec3 across = glm::cross(from_center, ray.direction);
-    result.margin = std::abs(std::sqrt(glm::dot(across, across) / length_squared) / radii_[0] - 1);
-    double roots[2];
-    long double c = -static_cast<long double>(radii_[0]) * radii_[0];
-    for (int axis = 0; axis < 3; ++axis) c += static_cast<long double>(from_center[axis]) * from_center[axis];
-    if (!solve(length_squared, glm::dot(from_center, ray.direction), c, roots)) return result;
-    const int dropped = starts_here ? nearest_to_zero(roots) : -1;
-    for (int i = 0; i < 2; ++i) {
-        if (i == dropped) continue;
-        const dvec3 normal = glm::normalize(from_center + roots[i] * ray.direction);
-        result.at[result.count++] = {roots[i], normal, normal, {}};
-    }
-    return result;
-}
-
-// |q|² − z² = (r0 + k z)², z the height of q over the base along the axis, 0 <= z <= height.
-Crossings Shape::cross_cone(const Ray& ray, bool starts_here) const {
-    Crossings result;
-    const double height = glm::distance(points_[0], points_[1]);
-    const dvec3 axis = (points_[1] - points_[0]) / height;
-    const double slope = (radii_[1] - radii_[0]) / height;
-    const dvec3 from_base = ray.origin - points_[0];
-    const double origin_z = glm::dot(from_base, axis);
-    const double step_z = glm::dot(ray.direction, axis);
-    const dvec3 origin_across = from_base - origin_z * axis;
-    const dvec3 step_across = ray.direction - step_z * axis;
-    const double origin_radius = radii_[0] + slope * origin_z;
-    const double step_radius = slope * step_z;
-
-    const double a = glm::dot(step_across, step_across) - step_radius * step_radius;
-    const double b = glm::dot(origin_across, step_across) - origin_radius * step_radius;
-    const double c = glm::dot(origin_across, origin_across) - origin_radius * origin_radius;
-    const double size = std::max(std::abs(b * b), std::abs(a * c));
-    result.margin = size > 0 ? std::abs(b * b - a * c) / size : 0;
-    double roots[2];
-    if (!solve(a, b, c, roots)) return result;
-    const int dropped = starts_here ? nearest_to_zero(roots) : -1;
-    for (int i = 0; i < 2; ++i) {
-        if (i == dropped || !std::isfinite(roots[i])) continue;
-        const double z = origin_z + roots[i] * step_z;
-        const double radius = origin_radius + roots[i] * step_radius;
-        result.margin = std::min({result.margin, std::abs(z) / height, std::abs(z - height) / height});
-        if (!(z >= 0 && z <= height && radius >= 0)) continue;
-        const dvec3 across = origin_across + roots[i] * step_across;
-        const dvec3 normal = glm::normalize(across - slope * radius * axis);
-        result.at[result.count++] = {roots[i], normal, normal, {}};
-    }
-    return result;
+std::vector<glm::dmat4> instance_placements(const Scene& scene) {
+    std::vector<glm::dmat4> placements;
+    for_each_instance(scene, scene.instances, glm::dmat4(1),
+                      [&](const glm::dmat4& placement, const Group&) { placements.push_back(placement); });
+    return placements;
 }
 
 }  // namespace sahl::oracle
