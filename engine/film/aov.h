@@ -1,8 +1,10 @@
 // Arbitrary output variables: what the renderer knows of the first surface behind each pixel.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace sahl {
@@ -17,6 +19,26 @@ enum class Aov {
     instance_id,   ///< 0 in the world; instances count from 1, depth first in the order of the scene
     material_id,   ///< index in Scene::materials
 };
+
+/// Names on the command line and in EXR files, where each component is a channel: `Z`,
+/// `N.X`, `albedo.R`, …
+struct AovName {
+    Aov aov;
+    std::string_view name;
+    std::string_view components;  ///< a letter each, after a dot; empty: one channel of that name
+    bool is_id;
+};
+
+inline constexpr std::array aov_names{
+    AovName{Aov::depth, "Z", "", false},
+    AovName{Aov::normal, "N", "XYZ", false},
+    AovName{Aov::albedo, "albedo", "RGB", false},
+    AovName{Aov::primitive_id, "id.primitive", "", true},
+    AovName{Aov::instance_id, "id.instance", "", true},
+    AovName{Aov::material_id, "id.material", "", true},
+};
+
+constexpr const AovName& aov_name(Aov aov) { return aov_names[static_cast<std::size_t>(aov)]; }
 
 constexpr std::uint32_t no_aov_id = 0xffffffff;
 

@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/film/aov.h"
 #include "engine/film/film.h"
 #include "engine/film/transfer.h"
 
@@ -23,13 +25,29 @@ enum class PixelType { uint8, uint16, half, float32 };
 ///   .tif .tiff   uint8, uint16, float32
 struct OutputSettings {
     std::optional<PixelType> pixel_type{};  ///< none: the format's default
-    std::optional<Transfer> transfer{};   ///< none: srgb for integers, linear for floats, which hold no other
-    Rounding rounding = Rounding::round;  ///< of integers
-    float exposure = 0;                   ///< in stops: values are multiplied by 2^exposure first
+    std::optional<Transfer> transfer{};  ///< none: srgb for integers, linear for floats, which hold no other
+    std::optional<Rounding> rounding{};  ///< of integers; none: round
+    float exposure = 0;                  ///< in stops: values are multiplied by 2^exposure first
+    /// EXR: none, rle, zips, zip (default), piz, pxr24, b44, b44a, dwaa:1..500, dwab:1..500 (45; the last
+    /// five lose precision, pxr24 of Z and N too); TIFF: none, lzw, zip (default), packbits; JPEG:
+    /// jpeg:1..100 (quality); PNG: zip:0..9. The level may be left out.
+    std::optional<std::string> compression{};
     /// Names and values that go into EXR and PNG files as they are; TIFF and JPEG keep those they
     /// have tags for (Software, DateTime, …), HDR none.
     std::vector<std::pair<std::string, std::string>> metadata{};
 };
+
+/// Names of all formats' compressions, without levels.
+std::vector<std::string> compression_names();
+
+/// Whether the format of `path` has room for AOVs. Throws as check_output.
+bool can_hold_aovs(const std::filesystem::path& path);
+
+/// `settings` for each of several files: without the pixel type, the transfer, the rounding and the
+/// compression that its format cannot hold. Throws Error(usage) for one that no file can, listing
+/// what each can. A single file's settings stay as they are, for check_output to judge.
+std::vector<OutputSettings> settings_for(std::span<const std::filesystem::path> paths,
+                                         const OutputSettings& settings);
 
 /// To be called before rendering: throws Error(usage) for an extension that is no image format and
 /// for settings that the format cannot hold, listing what it can; Error(output) for a path that
@@ -39,11 +57,14 @@ void check_output(const std::filesystem::path& path, const OutputSettings& setti
 /// Writes `image` (3 channels) in the format of the extension, encoded in memory first, then as
 /// write_file does. A special file without an extension, such as /dev/null, gets a PNG.
 /// NaN is stored as 0; values beyond what half or float hold as the largest finite value.
+/// `aovs` (of the image's size, EXR only) are stored beside R, G and B in channels of their own, see
+/// aov_names: as they are, Z and N as float, albedo in the pixel type, ids as unsigned integers.
 /// Throws as check_output, Error(output) for what fails in encoding or writing.
-void write_image(const std::filesystem::path& path, const Image& image, const OutputSettings& settings);
+void write_image(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
+                 std::span<const AovImage> aovs = {});
 
-/// Reads any image that OpenImageIO knows into 3 channels: one channel is replicated, channels
-/// after the third are dropped. Values as stored, 8-bit code v as v/255, no transfer function.
+/// Reads any image that OpenImageIO knows into 3 channels: R, G and B if it names them, else the first
+/// three; one channel is replicated. Values as stored, 8-bit code v as v/255, no transfer function.
 /// Throws Error(scene) for a missing, damaged or unknown file or one larger than 65536x65536,
 /// Error(memory) for one that does not fit into this machine's memory.
 Image read_image(const std::filesystem::path& path);
