@@ -14,3 +14,4 @@
 #include "engine/render/renderer.h"
 #include "engine/scene/load.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/write_scene.h"

@@ -1,0 +1,64 @@
+#include "engine/scene/write_text.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "engine/core/error.h"
+
+namespace sahl {
+
+std::string decimal(float x) {
+    std::string text = fmt::format("{}", x);
+    // A float between two doubles: read as double first, its shortest text may become its neighbour.
+    double read = 0;
+    std::from_chars(text.data(), text.data() + text.size(), read);
+    if (static_cast<float>(read) != x) text = fmt::format("{}", static_cast<double>(x));
+    return text;
+}
+
+std::string decimal(double x) { return fmt::format("{}", x); }
+
+std::string decimals(glm::vec3 v, std::string_view separator) {
+    return fmt::format("{1}{0}{2}{0}{3}", separator, decimal(v.x), decimal(v.y), decimal(v.z));
+}
+
+std::string decimals(glm::dvec3 v, std::string_view separator) {
+    return fmt::format("{1}{0}{2}{0}{3}", separator, decimal(v.x), decimal(v.y), decimal(v.z));
+}
+
+glm::dvec3 before_normalizing(glm::vec3 normal, std::string_view format) {
+    const glm::dvec3 middle(normal);
+    if (glm::vec3(glm::normalize(middle)) == normal) return middle;
+    // What rounds to `normal` is a box about it. Along the diagonal from its corner nearest to the
+    // origin to its farthest the length grows from below 1 to above 1.
+    glm::dvec3 near_corner = middle;
+    glm::dvec3 far_corner = middle;
+    for (int i = 0; i < 3; ++i) {
+        if (normal[i] == 0) continue;
+        const float outwards = normal[i] > 0 ? 2.0F : -2.0F;
+        near_corner[i] += 0.499 * (static_cast<double>(std::nextafter(normal[i], 0.0F)) - middle[i]);
+        far_corner[i] += 0.499 * (static_cast<double>(std::nextafter(normal[i], outwards)) - middle[i]);
+    }
+    constexpr int halvings = 60;
+    double low = 0;
+    double high = 1;
+    for (int i = 0; i < halvings; ++i) {
+        const double t = (low + high) / 2;
+        (glm::length(near_corner + t * (far_corner - near_corner)) < 1 ? low : high) = t;
+    }
+    const glm::dvec3 on_sphere = near_corner + low * (far_corner - near_corner);
+    if (glm::vec3(glm::normalize(on_sphere)) != normal) {
+        cannot_express(format, fmt::format("makes normals unit length, and the length of {} is {:g}",
+                                           decimals(normal), glm::length(middle)));
+    }
+    return on_sphere;
+}
+
+void cannot_express(std::string_view format, std::string_view lacks) {
+    throw Error(ExitCode::scene, fmt::format("{} {}; write .json, which has everything", format, lacks));
+}
+
+}  // namespace sahl

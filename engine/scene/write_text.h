@@ -1,0 +1,28 @@
+// What all scene writers share: numbers as text, and the refusal of what a format has no words for.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <glm/vec3.hpp>
+
+namespace sahl {
+
+/// The shortest decimal text that readers of double and then float turn into the same float again.
+std::string decimal(float x);
+/// The shortest decimal text that is read as the same double again.
+std::string decimal(double x);
+
+/// The three components with `separator` in between.
+std::string decimals(glm::vec3 v, std::string_view separator = " ");
+std::string decimals(glm::dvec3 v, std::string_view separator = " ");
+
+/// A vector that is a unit normal again, bit for bit, after a loader has normalised it in double and
+/// made it float: a point of the unit sphere that rounds to `normal`. Throws Error(scene) naming
+/// `format` if there is none, because `normal` is no unit vector.
+glm::dvec3 before_normalizing(glm::vec3 normal, std::string_view format);
+
+/// Throws Error(scene) "`format` `lacks`; write .json, which has everything".
+[[noreturn]] void cannot_express(std::string_view format, std::string_view lacks);
+
+}  // namespace sahl
