@@ -16,6 +16,7 @@ typedef struct {
     const global BvhNode* nodes;
     const global uchar* leaves;
     const global float* polygon_vertices;
+    const global DeviceInstance* instances;
     float extent;  // largest |coordinate| of the scene
 } Bvh;
 

@@ -42,6 +42,9 @@ using sahl_uint = std::uint32_t;
 #define SAHL_MAX_TREE_DEPTH 42u
 #define SAHL_STACK_SIZE 304u
 
+// An instance's tree is walked on top of the world's.
+#define SAHL_LEVELS 2u
+
 // An id in a block: the primitive's index in Scene::primitives with flags. SAHL_ID_BIAS keeps the
 // word, read as a float beside the vertices, from being a denormal.
 #define SAHL_ID_BIAS 0x40000000u
@@ -84,9 +87,9 @@ typedef struct {
 } SphereBlock;
 SAHL_STATIC_ASSERT(sizeof(SphereBlock) == 128, "SphereBlock is two lines");
 
-// Four quadrics in their object spaces, p = m (world - origin): the unit sphere for ellipsoids;
-// for cones the surface x² + y² = (1 + slope z)², 0 <= z <= 1. m is row-major. Unused lanes have
-// NaN in m.
+// Four shapes in their object spaces, p = m (world - origin): the unit sphere for ellipsoids; for
+// cones the surface x² + y² = (1 + slope z)², 0 <= z <= 1, for solid cones what it encloses; the disc
+// x² + y² <= 1, z = 0; the box -1 <= x, y, z <= 1. m is row-major. Unused lanes have NaN in m.
 typedef struct {
     float m[9][4];
     float x[4], y[4], z[4];
@@ -108,18 +111,33 @@ typedef struct {
 } PolygonBlock;
 SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
 
+// A group in the world. Rows of object_from_world: x, y, z and the translation, then what these four
+// floats lack of the double precision values.
+typedef struct {
+    float rows[3][8];
+    sahl_uint root;  // node of the group's tree
+    float extent;    // largest |coordinate| of the group's bounds
+    sahl_uint spare[6];
+} DeviceInstance;
+SAHL_STATIC_ASSERT(sizeof(DeviceInstance) == 128, "DeviceInstance is two lines");
+
+// Instance 0 is the world; DeviceInstance i is instance i + 1.
+#define SAHL_WORLD 0u
+
 // ---- Shading ----------------------------------------------------------------------------
 
 // What shading looks up by primitive id. `data` is an offset (in floats) into the shape data:
-//   triangle   vertices 0..2; if smooth also normals 0..2
+//   triangle   vertices 0..2; if smooth also normals 0..2; if it has them uv 0..2
 //   sphere     centre, radius
-//   ellipsoid  rows 0..2 of m, origin
-//   cone       rows 0..2 of m, origin, slope
-//   polygon    unit normal, a point, then (bits of uints) first vertex, vertex count
-// For all but triangles each vector is three floats and the three that they lack of the double
-// precision value, each number a float and the one it lacks.
+//   ellipsoid, disc, box   rows 0..2 of m, origin
+//   cone, solid cone       rows 0..2 of m, origin, slope
+//   polygon    unit normal, a point, then (bits of uints) first vertex, vertex count, then what u and
+//              v are the products of with the vector from the point
+// For all but triangles and uv each vector is three floats and the three that they lack of the
+// double precision value, each number a float and the one it lacks.
 #define SAHL_PRIMITIVE_SMOOTH 1u
-#define SAHL_PRIMITIVE_TURNED 2u  // a cone whose apex is at z = 0
+#define SAHL_PRIMITIVE_UV 2u      // a triangle that has uv
+#define SAHL_PRIMITIVE_TURNED 4u  // a cone whose apex is at z = 0
 typedef struct {
     sahl_uint kind;
     sahl_uint material;
@@ -131,31 +149,58 @@ SAHL_STATIC_ASSERT(sizeof(DevicePrimitive) == 16, "DevicePrimitive is 16 bytes")
 #define SAHL_MATERIAL_TWO_SIDED 1u
 #define SAHL_MATERIAL_BLINN 2u
 #define SAHL_MATERIAL_TRANSMITS 4u
+#define SAHL_MATERIAL_TEXTURED 8u
+#define SAHL_MATERIAL_ATTENUATES 16u  // reflected light, by distance
+#define SAHL_NO_TEXTURE 0xffffffffu
 typedef struct {
-    float emitted[3];  // ambient + emission
+    float ambient[3];  // times the ambient light
     float shininess;
     float diffuse[3];
     float ior;
     float specular[3];
     sahl_uint flags;
     float reflection[3];
-    float spare0;
+    float ior_outside;
     float transmission[3];
-    float spare1;
+    sahl_uint ambient_texture;
+    float emission[3];
+    sahl_uint diffuse_texture;
+    float attenuation[3];
+    sahl_uint specular_texture;
+    sahl_uint emission_texture, reflection_texture;
+    sahl_uint spare[2];
 } DeviceMaterial;
-SAHL_STATIC_ASSERT(sizeof(DeviceMaterial) == 80, "DeviceMaterial is 80 bytes");
+SAHL_STATIC_ASSERT(sizeof(DeviceMaterial) == 128, "DeviceMaterial is 128 bytes");
+
+// Vectors as three floats and the three that they lack of the double precision value.
+#define SAHL_PATTERN_CHECKER 0u
+#define SAHL_PATTERN_GRADIENT 1u
+#define SAHL_TEXTURE_POSITION 0u
+#define SAHL_TEXTURE_UV 1u
+typedef struct {
+    float color0[3];
+    sahl_uint pattern;
+    float color1[3];
+    sahl_uint space;
+    float origin[6];
+    float extent[6];
+} DeviceTexture;
+SAHL_STATIC_ASSERT(sizeof(DeviceTexture) == 80, "DeviceTexture is 80 bytes");
 
 #define SAHL_LIGHT_POINT 0u
 #define SAHL_LIGHT_DIRECTIONAL 1u
+#define SAHL_LIGHT_SPOT 2u
 typedef struct {
     float position[3];  // or the unit vector towards a directional light
     sahl_uint kind;
     float color[3];
-    float spare0;
+    float cos_inner;  // of a spot's angles
     float attenuation[3];
-    float spare1;
+    float cos_outer;
+    float direction[3];  // the way a spot shines, unit
+    float spare;
 } DeviceLight;
-SAHL_STATIC_ASSERT(sizeof(DeviceLight) == 48, "DeviceLight is 48 bytes");
+SAHL_STATIC_ASSERT(sizeof(DeviceLight) == 64, "DeviceLight is 64 bytes");
 
 typedef struct {
     float background[3];
@@ -182,14 +227,15 @@ typedef struct {
 SAHL_STATIC_ASSERT(sizeof(CameraConstants) == 112, "CameraConstants is 112 bytes");
 
 // Which camera samples a wave generates: `count` of them from number `first` (low and high word)
-// on, counted pixel by pixel in the crop's tile order, `spp` a pixel.
+// on, counted pixel by pixel in the crop's tile order, samples 0..`samples`-1 of each pixel's `spp`.
 typedef struct {
     sahl_uint first_low, first_high;
     sahl_uint count;
     sahl_uint spp;
     sahl_uint crop_x, crop_y, crop_width, crop_height;
     sahl_uint seed_low, seed_high;
-    sahl_uint spare[2];
+    sahl_uint samples;
+    sahl_uint spare;
 } WaveConstants;
 SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 
@@ -203,15 +249,22 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 #define SAHL_RAY_ORIGIN_LOW 9
 #define SAHL_RAY_DIRECTION_LOW 12
 #define SAHL_RAY_FLOATS 15
-#define SAHL_RAY_PIXEL 0    // index in the film
-#define SAHL_RAY_EXCLUDE 1  // the primitive it starts on, or SAHL_NO_PRIMITIVE
-#define SAHL_RAY_UINTS 2
+#define SAHL_RAY_PIXEL 0     // index in the film
+#define SAHL_RAY_EXCLUDE 1   // the primitive it starts on, or SAHL_NO_PRIMITIVE, with SAHL_RAY_ATTENUATED
+#define SAHL_RAY_INSTANCE 2  // the instance of that primitive
+#define SAHL_RAY_UINTS 3
 
-// Hits: t, u, v in one buffer; the primitive or SAHL_NO_PRIMITIVE in another.
+// The ray's light is attenuated by its length, as the material that it starts on says.
+#define SAHL_RAY_ATTENUATED 0x80000000u
+
+// Hits: t, u, v in one buffer; the primitive or SAHL_NO_PRIMITIVE, and its instance, in another.
 #define SAHL_HIT_T 0
 #define SAHL_HIT_U 1
 #define SAHL_HIT_V 2
 #define SAHL_HIT_FLOATS 3
+#define SAHL_HIT_PRIMITIVE 0
+#define SAHL_HIT_INSTANCE 1
+#define SAHL_HIT_UINTS 2
 
 // What shadow rays start from: the position and the vector ng·offset off the surface.
 #define SAHL_SURFACE_POSITION 0
@@ -222,6 +275,17 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 #define SAHL_OUTCOME_REFLECTED 1u
 #define SAHL_OUTCOME_TRANSMITTED 2u
 #define SAHL_OUTCOME_SHADOW_RAY 4u
+
+// AOVs: arrays of floats and of ids.
+#define SAHL_AOV_DEPTH 0
+#define SAHL_AOV_NORMAL 1
+#define SAHL_AOV_ALBEDO 4
+#define SAHL_AOV_FLOATS 7
+#define SAHL_AOV_PRIMITIVE 0
+#define SAHL_AOV_INSTANCE 1
+#define SAHL_AOV_MATERIAL 2
+#define SAHL_AOV_UINTS 3
+#define SAHL_AOV_NO_ID 0xffffffffu
 
 // Parents that one work-item compacts.
 #define SAHL_COMPACT_BLOCK 256u

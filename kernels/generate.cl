@@ -9,11 +9,11 @@ kernel void generate(const CameraConstants camera, const WaveConstants wave, glo
     const uint2 seed = (uint2)(wave.seed_low, wave.seed_high);
     SAHL_FOR_EACH_RAY(i, wave.count) {
         ulong sample = first + i;
-        uint2 pixel = crop_pixel((uint)(sample / wave.spp), wave.crop_width, wave.crop_height);
+        uint2 pixel = crop_pixel((uint)(sample / wave.samples), wave.crop_width, wave.crop_height);
         uint x = wave.crop_x + pixel.x, y = wave.crop_y + pixel.y;
-        float2 in_pixel = pixel_sample(x, y, (uint)(sample % wave.spp), wave.spp, seed);
+        float2 in_pixel = pixel_sample(x, y, (uint)(sample % wave.samples), wave.spp, seed);
         real3 eye = camera_vector(camera.eye, camera.eye_low);
         store_ray(rays, ray_ids, capacity, i, round3(eye), eye, camera_direction(&camera, x, y, in_pixel),
-                  SAHL_NO_PRIMITIVE, (float3)(1.0f), pixel.y * wave.crop_width + pixel.x);
+                  SAHL_NO_PRIMITIVE, SAHL_WORLD, (float3)(1.0f), pixel.y * wave.crop_width + pixel.x);
     }
 }

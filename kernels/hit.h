@@ -10,6 +10,7 @@ typedef struct {
     float3 origin;
     float3 direction;  // any length but 0
     uint exclude;      // the primitive it starts on, or SAHL_NO_PRIMITIVE
+    uint instance;     // the instance of that primitive
 } Ray;
 
 // Occlusion of a shadow ray.
@@ -17,38 +18,50 @@ typedef struct {
 #define SAHL_HIT_TRANSPARENT 1u
 #define SAHL_HIT_OPAQUE 2u
 
-/// What a ray has met so far. Hits are ordered by (t, primitive): a hit is taken when it comes
-/// after (t_min, min_primitive) and before (t, before_primitive), so that every traversal order
-/// ends with the same one, and walking on behind a hit meets each surface once.
+/// A surface's place in the order of surfaces: by instance, then by primitive.
+static inline ulong surface_rank(uint instance, uint primitive) { return (ulong)instance << 32 | primitive; }
+
+/// What a ray has met so far. Hits are ordered by (t, rank): a hit is taken when it comes after
+/// (t_min, min_rank) and before (t, before_rank), so that every traversal order ends with the same
+/// one, and walking on behind a hit meets each surface once.
 typedef struct {
     float t_min;
-    uint min_primitive;
+    ulong min_rank;
     float t;
-    uint before_primitive;
+    ulong before_rank;
     float u, v;
     uint primitive;  // SAHL_NO_PRIMITIVE while there is none
+    uint instance;
     uint occlusion;  // any hit only
+    uint inside_of;  // the instance that is being walked through
 } HitState;
 
 /// Hits with t_min < t < t_max.
 static inline HitState hit_state(float t_min, float t_max) {
-    HitState state = {t_min, SAHL_NO_PRIMITIVE, t_max, 0u, 0.0f, 0.0f, SAHL_NO_PRIMITIVE, SAHL_HIT_NOTHING};
+    HitState state = {
+        t_min, ~0ul, t_max, 0ul, 0.0f, 0.0f, SAHL_NO_PRIMITIVE, SAHL_WORLD, SAHL_HIT_NOTHING, SAHL_WORLD};
     return state;
 }
 
 /// Hits of `state`'s range behind the one it holds.
 static inline HitState hit_state_behind(HitState state, float t_max) {
     HitState next = hit_state(state.t, t_max);
-    next.min_primitive = state.primitive;
+    next.min_rank = surface_rank(state.instance, state.primitive);
     return next;
+}
+
+/// Whether surface `id` is seen by a ray that comes from its front or its back.
+static inline bool is_seen_from(uint id, bool front) {
+    return !(id & (front ? SAHL_ID_BACK_ONLY : SAHL_ID_FRONT_ONLY));
 }
 
 /// Offers a hit. A shadow ray (any_hit) keeps its range when it meets a transparent surface and
 /// only remembers it. NaN distances are never taken.
 static inline void offer_hit(HitState* state, float t, float u, float v, uint id, bool any_hit) {
     uint primitive = id & SAHL_ID_MASK;
-    bool after = t > state->t_min || (t == state->t_min && primitive > state->min_primitive);
-    bool before = t < state->t || (t == state->t && primitive < state->before_primitive);
+    ulong rank = surface_rank(state->inside_of, primitive);
+    bool after = t > state->t_min || (t == state->t_min && rank > state->min_rank);
+    bool before = t < state->t || (t == state->t && rank < state->before_rank);
     if (!(after && before)) {
         return;
     }
@@ -60,12 +73,12 @@ static inline void offer_hit(HitState* state, float t, float u, float v, uint id
     state->u = u;
     state->v = v;
     state->primitive = primitive;
-    state->before_primitive = primitive;
+    state->instance = state->inside_of;
+    state->before_rank = rank;
 }
 
-/// Offers the two roots of a curved surface: where the ray enters the solid it bounds and where it
-/// leaves. A ray that starts on the surface drops the root at its origin, a surface that is seen
-/// from inside only drops the entering one.
+/// Offers the two roots of a curved surface or a solid: where the ray enters the solid it bounds and
+/// where it leaves. A ray that starts on the surface drops the root at its origin.
 static inline void offer_roots(HitState* state, float enter, bool enter_valid, float leave, bool leave_valid,
                                uint id, uint exclude, bool any_hit) {
     if ((id & SAHL_ID_MASK) == exclude) {
@@ -73,10 +86,10 @@ static inline void offer_roots(HitState* state, float enter, bool enter_valid, f
         enter_valid = enter_valid && !enter_is_origin;
         leave_valid = leave_valid && enter_is_origin;
     }
-    if (enter_valid && !(id & SAHL_ID_BACK_ONLY)) {
+    if (enter_valid && is_seen_from(id, true)) {
         offer_hit(state, enter, 0.0f, 0.0f, id, any_hit);
     }
-    if (leave_valid && !(id & SAHL_ID_FRONT_ONLY)) {
+    if (leave_valid && is_seen_from(id, false)) {
         offer_hit(state, leave, 0.0f, 0.0f, id, any_hit);
     }
 }

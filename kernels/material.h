@@ -3,16 +3,17 @@
 #define SAHL_MATERIAL_H
 
 #include "kernels/device_types.h"
+#include "kernels/light.h"
 #include "kernels/real.h"
 
 /// Light sent towards `wo` of what arrives from `wi` (both unit, away from the surface).
 /// Phong (1975): (R·V)^n, gated by N·L > 0. Blinn (1977): (N·H)^n, ungated.
 /// With interpolated normals a light can be above `ns` and below the surface; it is not cut off
 /// here, the shadow ray decides (see Hanika 2021 for the terminator this leaves).
-static inline float3 phong_light(const global DeviceMaterial* material, float3 ns, float3 wi, float3 wo) {
+static inline float3 phong_light(const global DeviceMaterial* material, float3 diffuse, float3 specular,
+                                 float3 ns, float3 wi, float3 wo) {
     float cosine = dot3(ns, wi);
-    float3 light = load3(material->diffuse) * SAHL_MAX(cosine, 0.0f);
-    float3 specular = load3(material->specular);
+    float3 light = diffuse * SAHL_MAX(cosine, 0.0f);
     if (!is_nonzero(specular)) {
         return light;
     }
@@ -27,6 +28,16 @@ static inline float3 phong_light(const global DeviceMaterial* material, float3 n
         lobe = power(SAHL_MAX(dot3(r, wo), 0.0f), material->shininess);
     }
     return light + specular * lobe;
+}
+
+/// What remains of light that has come `distance` to this surface by reflection; infinite for the
+/// background's.
+static inline float reflection_falloff(const global DeviceMaterial* material, float distance) {
+    const global float* a = material->attenuation;
+    if (isinf(distance)) {
+        return a[1] == 0.0f && a[2] == 0.0f ? 1.0f / a[0] : 0.0f;
+    }
+    return 1.0f / attenuation(a, distance);
 }
 
 /// The mirror direction of unit `d` at unit normal `n` (either side).

@@ -62,7 +62,7 @@ static inline void intersect_polygons(const global PolygonBlock* block, const gl
         uint id = block->id[lane];
         const global float* vertices = polygon_vertices + 3u * block->first_vertex[lane];
         float3 lo, hi;
-        if ((id & SAHL_ID_MASK) != ray->exclude &&
+        if ((id & SAHL_ID_MASK) != ray->exclude && is_seen_from(id, ((float*)&nd)[lane] <= 0.0f) &&
             polygon_contains(vertices, block->vertex_count[lane], shear, &lo, &hi)) {
             offer_hit(state, keep_to_box(((float*)&t)[lane], lo, hi, boxes), 0.0f, 0.0f, id, any_hit);
         }

@@ -1,5 +1,6 @@
-// Ray intersection with ellipsoids and open cones (cylinders among them), one ray against a block
-// of four, each in its own object space: the unit sphere, or x² + y² = (1 + slope z)², 0 <= z <= 1.
+// Ray intersection with ellipsoids and cones (cylinders among them), open or solid, one ray against
+// a block of four, each in its own object space: the unit sphere, or x² + y² = (1 + slope z)²,
+// 0 <= z <= 1.
 //
 // The ray is first moved to the point nearest the object (as Haines et al. do for the sphere, Ray
 // Tracing Gems ch. 7), so that nothing cancels for a far or small one. There the cone's discriminant
@@ -20,6 +21,11 @@ typedef struct {
     float4 inverse_dd;
     float4 shift;
 } ObjectRays;
+
+/// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
+static inline float4 finite_inverse4(float4 d) {
+    return 1.0f / select(d, copysign((float4)(1e-18f), d), fabs(d) < 1e-18f);
+}
 
 static inline ObjectRays object_rays(const global QuadricBlock* block, const Ray* ray, float middle_z) {
     float4 ox = ray->origin.x - vload4(0, block->x);
@@ -49,23 +55,40 @@ static inline void intersect_ellipsoids(const global QuadricBlock* block, const 
     offer_chords(state, r.shift - half_chord, r.shift + half_chord, block->id, ray->exclude, any_hit);
 }
 
-static inline void intersect_cones(const global QuadricBlock* block, const Ray* ray, HitState* state,
-                                   bool any_hit) {
-    ObjectRays r = object_rays(block, ray, 0.5f);
-    float4 slope = vload4(0, block->slope);
-    float4 w = 1.0f + slope * r.pz, wd = slope * r.dz;
-    float4 ex = w * r.dx - wd * r.px, ey = w * r.dy - wd * r.py;
-    float4 turn = r.px * r.dy - r.py * r.dx;
-    float4 s = sqrt(ex * ex + ey * ey - turn * turn);
-    float4 a = r.dx * r.dx + r.dy * r.dy - wd * wd;
-    float4 b = r.px * r.dx + r.py * r.dy - w * wd;
-    float4 radius = sqrt(r.px * r.px + r.py * r.py);
+/// Where x² + y² - (1 + slope z)² falls below 0 (`enter`) and rises above it (`leave`) along rays.
+/// `growth` is its leading coefficient: where that is negative, leave < enter.
+typedef struct {
+    float4 enter, leave;
+    float4 growth;
+} ConeRoots;
+
+static inline ConeRoots cone_roots(const ObjectRays* r, float4 slope) {
+    float4 w = 1.0f + slope * r->pz, wd = slope * r->dz;
+    float4 ex = w * r->dx - wd * r->px, ey = w * r->dy - wd * r->py;
+    float4 turn = r->px * r->dy - r->py * r->dx;
+    float4 a = r->dx * r->dx + r->dy * r->dy - wd * wd;
+    float4 discriminant = ex * ex + ey * ey - turn * turn;
+    // A steep ray always has roots, however near it passes the apex.
+    float4 s = sqrt(select(discriminant, SAHL_MAX(discriminant, 0.0f), a <= 0.0f));
+    float4 b = r->px * r->dx + r->py * r->dy - w * wd;
+    float4 radius = sqrt(r->px * r->px + r->py * r->py);
     float4 c = (radius - w) * (radius + w);
     float4 q = -(b + copysign(s, b));
     float4 first = q / a, second = c / q;
-    // (-b - s)/a is where x² + y² - w² falls, the entering root, whatever the sign of a.
-    // `first` is that one where b has no sign bit; select() looks at just that bit.
-    float4 enter = select(first, second, as_int4(b)), leave = select(second, first, as_int4(b));
+    // (-b - s)/a is the entering root, whatever the sign of a. `first` is that one where b has no
+    // sign bit; select() looks at just that bit.
+    ConeRoots roots;
+    roots.enter = select(first, second, as_int4(b));
+    roots.leave = select(second, first, as_int4(b));
+    roots.growth = a;
+    return roots;
+}
+
+static inline void intersect_cones(const global QuadricBlock* block, const Ray* ray, HitState* state,
+                                   bool any_hit) {
+    ObjectRays r = object_rays(block, ray, 0.5f);
+    ConeRoots roots = cone_roots(&r, vload4(0, block->slope));
+    float4 enter = roots.enter, leave = roots.leave;
     float4 enter_z = r.pz + enter * r.dz, leave_z = r.pz + leave * r.dz;
     int4 enter_valid = (enter_z >= 0.0f) & (enter_z <= 1.0f);
     int4 leave_valid = (leave_z >= 0.0f) & (leave_z <= 1.0f);
@@ -79,6 +102,38 @@ static inline void intersect_cones(const global QuadricBlock* block, const Ray* 
         offer_roots(state, ((float*)&enter)[lane], ((int*)&enter_valid)[lane] != 0, ((float*)&leave)[lane],
                     ((int*)&leave_valid)[lane] != 0, block->id[lane], ray->exclude, any_hit);
     }
+}
+
+/// The solid that cone and caps enclose: where the ray is inside of both the cone and 0 <= z <= 1, in
+/// one piece, so that nothing leaks where a cap meets the side.
+static inline void intersect_solid_cones(const global QuadricBlock* block, const Ray* ray, HitState* state,
+                                         bool any_hit) {
+    ObjectRays r = object_rays(block, ray, 0.5f);
+    float4 slope = vload4(0, block->slope);
+    float4 wd = slope * r.dz;
+    ConeRoots roots = cone_roots(&r, slope);
+    // A ray steeper than the side is inside both halves of the double cone, in one of them before it
+    // leaves and in the other from where it enters; the caps bound the half in which w = 1 + slope z
+    // grows along the ray's way in or shrinks on its way out. Without such a root there is nothing.
+    int4 steep = roots.growth <= 0.0f;
+    float4 first = select(roots.enter, (float4)(-INFINITY), steep & ~(wd > 0.0f));
+    float4 last = select(roots.leave, (float4)(INFINITY), steep & (wd > 0.0f));
+    first = select(first, (float4)(INFINITY), steep & (wd > 0.0f) & isinf(first));
+    last = select(last, (float4)(-INFINITY), steep & (wd < 0.0f) & isinf(last));
+    // Along a cylinder's axis it is inside all the way or nowhere.
+    int4 along = (wd == 0.0f) & (r.dx == 0.0f) & (r.dy == 0.0f);
+    float4 beside = select((float4)(INFINITY), (float4)(-INFINITY), r.px * r.px + r.py * r.py <= 1.0f);
+    first = select(first, beside, along);
+    last = select(last, (float4)(INFINITY), along);
+
+    float4 inverse = finite_inverse4(r.dz);
+    float4 bottom = -r.pz * inverse, top = (1.0f - r.pz) * inverse;
+    float4 enter = SAHL_MAX(first, SAHL_MIN(bottom, top));
+    float4 leave = SAHL_MIN(last, SAHL_MAX(bottom, top));
+    // The comparisons are false for NaN, which stands for a missed side.
+    int4 hit = (enter <= leave) & (first <= last);
+    enter = select((float4)(NAN), r.shift + enter, hit);
+    offer_chords(state, enter, r.shift + leave, block->id, ray->exclude, any_hit);
 }
 
 #endif

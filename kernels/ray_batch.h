@@ -30,7 +30,8 @@ static inline Ray load_ray(const global float* rays, const global uint* ray_ids,
     Ray ray;
     ray.origin = load_soa3(rays, SAHL_RAY_ORIGIN, capacity, i);
     ray.direction = load_soa3(rays, SAHL_RAY_DIRECTION, capacity, i);
-    ray.exclude = ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i];
+    ray.exclude = ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i] & SAHL_ID_MASK;
+    ray.instance = ray_ids[(size_t)SAHL_RAY_INSTANCE * capacity + i];
     return ray;
 }
 
@@ -41,10 +42,18 @@ static inline real3 load_soa3_real(const global float* arrays, uint first, uint 
            convert_real3(load_soa3(arrays, first_low, capacity, i));
 }
 
-/// Stores a ray that starts at `origin`, exactly, and is traced from `traced_origin`.
+static inline void store_hit(global float* hits, global uint* hit_ids, uint capacity, uint i,
+                             const HitState* hit) {
+    store_soa3(hits, SAHL_HIT_T, capacity, i, (float3)(hit->t, hit->u, hit->v));
+    hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i] = hit->primitive;
+    hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i] = hit->instance;
+}
+
+/// Stores a ray that starts at `origin`, exactly, and is traced from `traced_origin`. `start`: the
+/// primitive that it starts on, with SAHL_RAY_ATTENUATED.
 static inline void store_ray(global float* rays, global uint* ray_ids, uint capacity, uint i,
-                             float3 traced_origin, real3 origin, real3 direction, uint exclude, float3 weight,
-                             uint pixel) {
+                             float3 traced_origin, real3 origin, real3 direction, uint start, uint instance,
+                             float3 weight, uint pixel) {
     float3 traced_direction = round3(direction);
     store_soa3(rays, SAHL_RAY_ORIGIN, capacity, i, traced_origin);
     store_soa3(rays, SAHL_RAY_ORIGIN_LOW, capacity, i, round3(origin - convert_real3(traced_origin)));
@@ -53,7 +62,8 @@ static inline void store_ray(global float* rays, global uint* ray_ids, uint capa
                round3(direction - convert_real3(traced_direction)));
     store_soa3(rays, SAHL_RAY_WEIGHT, capacity, i, weight);
     ray_ids[(size_t)SAHL_RAY_PIXEL * capacity + i] = pixel;
-    ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i] = exclude;
+    ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i] = start;
+    ray_ids[(size_t)SAHL_RAY_INSTANCE * capacity + i] = instance;
 }
 
 #endif

@@ -24,13 +24,13 @@ static inline float3 transmittance(const Bvh* bvh, const global DevicePrimitive*
 }
 
 kernel void shadow(const global BvhNode* nodes, const global uchar* leaves,
-                   const global float* polygon_vertices, const global DevicePrimitive* primitives,
-                   const global DeviceMaterial* materials, const global DeviceLight* lights,
-                   const SceneConstants scene, const global uint* hit_primitives,
+                   const global float* polygon_vertices, const global DeviceInstance* instances,
+                   const global DevicePrimitive* primitives, const global DeviceMaterial* materials,
+                   const global DeviceLight* lights, const SceneConstants scene, const global uint* hit_ids,
                    const global float* shadow_surfaces, const global float* shadow_light,
                    const global uint* outcomes, global float* contributions, const uint capacity,
                    const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, scene.extent};
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
     SAHL_FOR_EACH_RAY(i, count) {
         if (outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
             continue;
@@ -47,7 +47,8 @@ kernel void shadow(const global BvhNode* nodes, const global uchar* leaves,
             Ray ray;
             ray.origin = offset_origin(position, offset, side);
             ray.direction = vector_to_light(lights + l, ray.origin);
-            ray.exclude = hit_primitives[i];
+            ray.exclude = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
+            ray.instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
             sum += brought * transmittance(&bvh, primitives, materials, &ray, shadow_t_max(lights + l));
         }
         store_soa3(contributions, 0u, capacity, i, sum);

@@ -1,5 +1,6 @@
 // Traversal of the 8-wide tree by one ray at a time: a node's eight boxes in one step, leaves of
-// four primitives in one step, a stack of waiting children in private memory.
+// four primitives in one step, a stack of waiting children in private memory. A leaf that is an
+// instance sends the ray, transformed, through the tree of its group, on the same stack.
 //
 // Children are visited in the order of their slots permuted by the ray's octant, which is front to
 // back (Ylitie, Karras, Laine 2017, sec. 3.2), so that nothing is sorted; waiting children behind
@@ -9,7 +10,10 @@
 #ifndef SAHL_TRAVERSE_SCALAR_H
 #define SAHL_TRAVERSE_SCALAR_H
 
+#include "kernels/box.h"
 #include "kernels/bvh.h"
+#include "kernels/disc.h"
+#include "kernels/instance.h"
 #include "kernels/polygon.h"
 #include "kernels/quadric.h"
 #include "kernels/sphere.h"
@@ -19,11 +23,13 @@
 // this much more, and their addends (bvh.h) leave room for the rest.
 #define SAHL_CULL_SLACK (1.0f + 0x1p-20f)
 
+static inline uint child_kind(uint child) { return child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK; }
+
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
                                   const RayBoxTest* boxes, HitState* state, bool any_hit) {
     ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
     const global uchar* block = bvh->leaves + offset;
-    switch (child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK) {
+    switch (child_kind(child)) {
         case SAHL_KIND_TRIANGLE:
             intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
             break;
@@ -40,7 +46,44 @@ static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, co
             intersect_polygons((const global PolygonBlock*)block, bvh->polygon_vertices, ray, shear, boxes,
                                state, any_hit);
             break;
+        case SAHL_KIND_SOLID_CONE:
+            intersect_solid_cones((const global QuadricBlock*)block, ray, state, any_hit);
+            break;
+        case SAHL_KIND_DISC:
+            intersect_discs((const global QuadricBlock*)block, ray, state, any_hit);
+            break;
+        case SAHL_KIND_BOX:
+            intersect_boxes((const global QuadricBlock*)block, ray, state, any_hit);
+            break;
     }
+}
+
+/// A ray with what its tests against boxes and triangles need.
+typedef struct {
+    Ray ray;
+    RayBoxTest boxes;
+    RayShear shear;
+} TracedRay;
+
+/// `exclude` is left out only where `instance` is the one that the ray starts on.
+static inline TracedRay traced_ray(float3 origin, float3 direction, const Ray* ray, uint instance,
+                                   float extent) {
+    TracedRay traced;
+    traced.ray.origin = origin;
+    traced.ray.direction = direction;
+    traced.ray.exclude = ray->instance == instance ? ray->exclude : SAHL_NO_PRIMITIVE;
+    traced.ray.instance = instance;
+    traced.boxes = ray_box_test(origin, direction, extent);
+    traced.shear = ray_shear(origin, direction);
+    return traced;
+}
+
+/// The ray in the space of the group of `bvh->instances[i]`.
+static inline TracedRay traced_in_instance(const Bvh* bvh, const Ray* ray, uint i) {
+    const global DeviceInstance* instance = bvh->instances + i;
+    return traced_ray(round3(group_from_world_point(instance, convert_real3(ray->origin))),
+                      round3(group_from_world_vector(instance, convert_real3(ray->direction))), ray, i + 1u,
+                      instance->extent);
 }
 
 /// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of
@@ -52,16 +95,25 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
         !isfinite(dot3(ray->origin, (float3)(1.0f)))) {
         return;
     }
-    const RayBoxTest boxes = ray_box_test(ray->origin, ray->direction, bvh->extent);
-    const RayShear shear = ray_shear(ray->origin, ray->direction);
-    uint waiting[SAHL_STACK_SIZE];
-    float entries[SAHL_STACK_SIZE];
+    const TracedRay in_world = traced_ray(ray->origin, ray->direction, ray, SAHL_WORLD, bvh->extent);
+    TracedRay here = in_world;
+    uint waiting[SAHL_LEVELS * SAHL_STACK_SIZE];
+    float entries[SAHL_LEVELS * SAHL_STACK_SIZE];
     uint size = 0;
+    uint world_size = 0;  // what of it waits in the world while the ray is in an instance
     uint current = 0;
     float cull_t = state->t * SAHL_CULL_SLACK;
     for (;;) {
+        if ((current & SAHL_CHILD_LEAF) && child_kind(current) == SAHL_KIND_INSTANCE) {
+            uint i = current & SAHL_CHILD_OFFSET_MASK;
+            here = traced_in_instance(bvh, ray, i);
+            state->inside_of = i + 1u;
+            world_size = size;
+            current = bvh->instances[i].root;
+            continue;
+        }
         if (current & SAHL_CHILD_LEAF) {
-            intersect_leaf(bvh, current, ray, &shear, &boxes, state, any_hit);
+            intersect_leaf(bvh, current, &here.ray, &here.shear, &here.boxes, state, any_hit);
             if (any_hit && (state->occlusion & SAHL_HIT_OPAQUE)) {
                 return;
             }
@@ -69,18 +121,22 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
         } else {
             const global BvhNode* node = bvh->nodes + current;
             float8 entry;
-            uint hit = intersect_children(node, &boxes, state->t_min, cull_t, &entry);
-            uint order = permute_by_octant(hit, boxes.octant);
+            uint hit = intersect_children(node, &here.boxes, state->t_min, cull_t, &entry);
+            uint order = permute_by_octant(hit, here.boxes.octant);
             while (order != 0u) {
                 uint position = highest_lane(order);
                 order ^= 1u << position;
-                uint slot = position ^ boxes.octant;
+                uint slot = position ^ here.boxes.octant;
                 waiting[size] = node->child[slot];
                 entries[size] = ((float*)&entry)[slot];
                 ++size;
             }
         }
         do {
+            if (state->inside_of != SAHL_WORLD && size == world_size) {
+                here = in_world;
+                state->inside_of = SAHL_WORLD;
+            }
             if (size == 0u) {
                 return;
             }

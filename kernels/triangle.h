@@ -38,13 +38,6 @@ static inline RayShear ray_shear(float3 origin, float3 direction) {
     return shear;
 }
 
-/// Distance to the plane of a triangle. The normal comes from raw vertex differences, compensated,
-/// so that slivers do as well as others.
-static inline float triangle_distance(float3 v0, float3 v1, float3 v2, float3 origin, float3 direction) {
-    float3 normal = accurate_cross3(v1 - v0, v2 - v0);
-    return dot3(normal, v0 - origin) / dot3(normal, direction);
-}
-
 static inline void intersect_triangles(const global TriangleBlock* block, const Ray* ray,
                                        const RayShear* shear, const RayBoxTest* boxes, HitState* state,
                                        bool any_hit) {
@@ -80,8 +73,14 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
         float3 v0 = (float3)(block->x[lane], block->y[lane], block->z[lane]);
         float3 v1 = (float3)(block->x[4 + lane], block->y[4 + lane], block->z[4 + lane]);
         float3 v2 = (float3)(block->x[8 + lane], block->y[8 + lane], block->z[8 + lane]);
-        float t = keep_to_box(triangle_distance(v0, v1, v2, ray->origin, ray->direction),
-                              min3(min3(v0, v1), v2), max3(max3(v0, v1), v2), boxes);
+        // The plane's normal from raw vertex differences, compensated: slivers do as well as others.
+        float3 normal = accurate_cross3(v1 - v0, v2 - v0);
+        float nd = dot3(normal, ray->direction);
+        if (!is_seen_from(id, nd <= 0.0f)) {
+            continue;
+        }
+        float t = keep_to_box(dot3(normal, v0 - ray->origin) / nd, min3(min3(v0, v1), v2),
+                              max3(max3(v0, v1), v2), boxes);
         float scale = 1.0f / ((float*)&determinant)[lane];
         offer_hit(state, t, ((float*)&v)[lane] * scale, ((float*)&w)[lane] * scale, id, any_hit);
     }

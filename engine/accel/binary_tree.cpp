@@ -24,7 +24,10 @@ struct Builder {
 };
 
 bool is_leaf(const SetSummary& summary, std::size_t size) {
-    return size <= SAHL_BLOCK_WIDTH && std::count(summary.counts.begin(), summary.counts.end(), size) == 1;
+    if (size > SAHL_BLOCK_WIDTH) return false;
+    const auto kind = std::find(summary.counts.begin(), summary.counts.end(), size);
+    return kind != summary.counts.end() &&
+           size <= block_width(static_cast<std::size_t>(kind - summary.counts.begin()));
 }
 
 // The left half, in whole blocks where there is more than one.

@@ -14,11 +14,12 @@ namespace sahl {
 struct BuildPrimitive {
     Bounds bounds{};
     std::uint32_t kind = 0;  ///< SAHL_KIND_*
-    std::uint32_t id = 0;    ///< index in Scene::primitives
+    std::uint32_t id = 0;    ///< index in Scene::primitives; of an instance: its number
 };
 
 /// `sah_cost` is the sum over nodes of area / root area, plus the same over leaves times 1 (triangles,
-/// spheres), 1.5 (ellipsoids, cones) or 2 (polygons), see cost_model.h. In a tree whose root box is
+/// spheres), 1.5 (ellipsoids, cones, discs, boxes), 2 (polygons, solid cones) or 6 (instances), see
+/// cost_model.h. In a tree whose root box is
 /// a line or a point every box counts as visited.
 struct BvhStatistics {
     std::uint64_t primitives = 0;
@@ -30,7 +31,7 @@ struct BvhStatistics {
     double build_seconds = 0;
 };
 
-/// A leaf of the wide tree: one block.
+/// A leaf of the wide tree: one block, or an instance.
 struct BvhLeaf {
     std::uint32_t kind = 0;
     std::uint32_t count = 0;    ///< 1..4
@@ -38,8 +39,8 @@ struct BvhLeaf {
 };
 
 /// Nodes in depth-first order, [0] the root. Leaf children carry SAHL_CHILD_LEAF, the kind, and a
-/// line offset. Leaves are numbered as depth-first visits of the slots 0..7 meet them; leaf k's block starts
-/// where the blocks of leaves 0..k-1 end (block_lines()).
+/// line offset, or an instance's number. Leaves are numbered as depth-first visits of the slots 0..7 meet
+/// them; leaf k's block starts where the blocks of leaves 0..k-1 end (block_lines()).
 struct Bvh {
     std::vector<device::BvhNode> nodes;
     std::vector<BvhLeaf> leaves;
@@ -48,15 +49,20 @@ struct Bvh {
     BvhStatistics statistics;
 };
 
-/// Lines of 64 bytes of a block of `kind`.
+/// Lines of 64 bytes of a block of `kind`; none for instances.
 std::uint32_t block_lines(std::uint32_t kind);
 
 /// Builds the tree. The same primitives give the same tree, bit for bit, whatever the number of
 /// threads. No primitives: a root whose slots are all empty.
 /// Bounds must be finite; a box may be flat or a point. Throws Error(scene) when the leaf buffer
 /// would exceed 2^28 lines or there are more than SAHL_MAX_PRIMITIVES.
+/// A leaf holds one instance.
 /// Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies" (binning);
 /// Ylitie, Karras, Laine 2017, sec. 3 (octant-ordered slots).
 Bvh build_bvh(std::vector<BuildPrimitive> primitives);
+
+/// Appends the nodes and leaves of `tree` to `forest`, their references moved along; bounds and
+/// statistics stay the forest's. Returns the index of the tree's root. Throws as build_bvh.
+std::uint32_t append_tree(Bvh& forest, const Bvh& tree);
 
 }  // namespace sahl

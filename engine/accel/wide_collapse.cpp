@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "engine/accel/cost_model.h"
 #include "engine/accel/slot_order.h"
 #include "engine/core/error.h"
 
@@ -79,6 +80,7 @@ std::uint32_t Collapse::add_leaf(const Subtree& leaf) const {
         block.ids[place] = primitives[i].id;
     }
     bvh.leaves.push_back(block);
+    if (kind == SAHL_KIND_INSTANCE) return SAHL_CHILD_LEAF | kind << SAHL_CHILD_KIND_SHIFT | block.ids[0];
     const std::uint32_t offset = bvh.leaf_lines;
     bvh.leaf_lines = offset_after_block(offset, kind);
     return SAHL_CHILD_LEAF | kind << SAHL_CHILD_KIND_SHIFT | offset;
@@ -109,9 +111,10 @@ std::uint32_t Collapse::add_node(const Children& children) const {
 }  // namespace
 
 std::uint32_t block_lines(std::uint32_t kind) {
-    constexpr std::array<std::size_t, 5> bytes{sizeof(device::TriangleBlock), sizeof(device::SphereBlock),
-                                               sizeof(device::QuadricBlock), sizeof(device::QuadricBlock),
-                                               sizeof(device::PolygonBlock)};
+    constexpr std::array<std::size_t, kind_count> bytes{
+        sizeof(device::TriangleBlock), sizeof(device::SphereBlock),  sizeof(device::QuadricBlock),
+        sizeof(device::QuadricBlock),  sizeof(device::PolygonBlock), sizeof(device::QuadricBlock),
+        sizeof(device::QuadricBlock),  sizeof(device::QuadricBlock), 0};
     return static_cast<std::uint32_t>(bytes.at(kind) / SAHL_LEAF_LINE_BYTES);
 }
 

@@ -1,14 +1,12 @@
 #include "engine/render/device_scene.h"
 
-#include <algorithm>
-#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "engine/render/host_scene.h"
 #include "engine/render/leaf_blocks.h"
-#include "engine/render/lower_scene.h"
 
 namespace sahl {
 namespace {
@@ -20,34 +18,22 @@ Buffer upload(Device& device, const std::vector<T>& values, std::string name) {
     return buffer;
 }
 
-float largest_coordinate(const Bounds& bounds) {
-    float extent = 0;
-    for (int k = 0; k < 3; ++k) {
-        extent = std::max({extent, std::abs(bounds.lo[k]), std::abs(bounds.hi[k])});
-    }
-    return extent;
-}
-
 }  // namespace
 
 DeviceScene make_device_scene(Device& device, const Scene& scene) {
-    LoweredScene lowered = lower_scene(scene);
-    const Bvh bvh = build_bvh(std::move(lowered.build_primitives));
-
+    const HostScene host = make_host_scene(scene);
     DeviceScene out;
-    out.nodes = upload(device, bvh.nodes, "BVH nodes");
-    out.leaves = Buffer(device, pack_leaf_blocks(device.memory(), scene, lowered, bvh), "leaf blocks");
-    out.polygon_vertices = upload(device, lowered.polygon_vertices, "polygon vertices");
-    out.primitives = upload(device, lowered.primitives, "primitives");
-    out.shape_data = upload(device, lowered.shape_data, "shape data");
-    out.materials = upload(device, lowered.materials, "materials");
-    out.lights = upload(device, lowered.lights, "lights");
-    out.constants.background[0] = scene.background.x;
-    out.constants.background[1] = scene.background.y;
-    out.constants.background[2] = scene.background.z;
-    out.constants.extent = scene.primitives.empty() ? 0.0F : largest_coordinate(bvh.bounds);
-    out.constants.light_count = static_cast<std::uint32_t>(lowered.lights.size());
-    out.bvh_statistics = bvh.statistics;
+    out.nodes = upload(device, host.bvh.nodes, "BVH nodes");
+    out.leaves = Buffer(device, pack_leaf_blocks(device.memory(), scene, host), "leaf blocks");
+    out.polygon_vertices = upload(device, host.lowered.polygon_vertices, "polygon vertices");
+    out.instances = upload(device, host.instances, "instances");
+    out.primitives = upload(device, host.lowered.primitives, "primitives");
+    out.shape_data = upload(device, host.lowered.shape_data, "shape data");
+    out.materials = upload(device, host.lowered.materials, "materials");
+    out.textures = upload(device, host.lowered.textures, "textures");
+    out.lights = upload(device, host.lowered.lights, "lights");
+    out.constants = host.constants;
+    out.bvh_statistics = host.bvh.statistics;
     return out;
 }
 

@@ -12,15 +12,17 @@ struct DeviceScene {
     Buffer nodes;
     Buffer leaves;
     Buffer polygon_vertices;
+    Buffer instances;
     Buffer primitives;
     Buffer shape_data;
     Buffer materials;
+    Buffer textures;
     Buffer lights;
     device::SceneConstants constants{};
     BvhStatistics bvh_statistics;
 };
 
-/// Lowers the scene, builds its BVH and uploads both. Errors as lower_scene, build_bvh and Buffer.
+/// Uploads what make_host_scene makes of the scene. Errors as there and of Buffer.
 DeviceScene make_device_scene(Device& device, const Scene& scene);
 
 }  // namespace sahl

@@ -69,7 +69,8 @@ void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLea
         block.x[k] = data[18];
         block.y[k] = data[19];
         block.z[k] = data[20];
-        block.slope[k] = leaf.kind == SAHL_KIND_CONE ? data[24] : 0.0F;
+        const bool cone = leaf.kind == SAHL_KIND_CONE || leaf.kind == SAHL_KIND_SOLID_CONE;
+        block.slope[k] = cone ? data[24] : 0.0F;
         block.id[k] = id;
     });
 }
@@ -93,11 +94,11 @@ void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLea
 
 }  // namespace
 
-HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, const LoweredScene& lowered,
-                            const Bvh& bvh) {
-    HostMemory memory(accountant, std::size_t{bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES, "leaf blocks");
+HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, const HostScene& host) {
+    const LoweredScene& lowered = host.lowered;
+    HostMemory memory(accountant, std::size_t{host.bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES, "leaf blocks");
     auto* block = static_cast<std::byte*>(memory.data());
-    for (const BvhLeaf& leaf : bvh.leaves) {
+    for (const BvhLeaf& leaf : host.bvh.leaves) {
         switch (leaf.kind) {
             case SAHL_KIND_TRIANGLE:
                 pack_triangles(scene, lowered, leaf, *reinterpret_cast<device::TriangleBlock*>(block));
@@ -107,6 +108,8 @@ HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, co
                 break;
             case SAHL_KIND_POLYGON:
                 pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
+                break;
+            case SAHL_KIND_INSTANCE:
                 break;
             default:
                 pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block));

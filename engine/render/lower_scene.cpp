@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
 
 #include "engine/core/error.h"
@@ -61,6 +63,29 @@ dvec3 newell_normal(const std::vector<vec3>& points) {
     return glm::normalize(normal);
 }
 
+/// The direction of the first edge that has one.
+dvec3 first_edge(const std::vector<vec3>& outline) {
+    const auto next =
+        std::find_if(outline.begin(), outline.end(), [&](const vec3& p) { return p != outline[0]; });
+    return glm::normalize(dvec3(*next) - dvec3(outline[0]));
+}
+
+constexpr std::uint32_t MaterialTextures::*texture_slots[] = {
+    &MaterialTextures::ambient, &MaterialTextures::diffuse, &MaterialTextures::specular,
+    &MaterialTextures::emission, &MaterialTextures::reflection};
+
+bool is_textured(const Material& material) {
+    return std::any_of(std::begin(texture_slots), std::end(texture_slots),
+                       [&](auto slot) { return material.textures.*slot != no_texture; });
+}
+
+bool uses_uv(const Scene& scene, const Material& material) {
+    return std::any_of(std::begin(texture_slots), std::end(texture_slots), [&](auto slot) {
+        const std::uint32_t texture = material.textures.*slot;
+        return texture != no_texture && scene.textures[texture].space == TextureSpace::uv;
+    });
+}
+
 /// A right-handed orthonormal frame whose z is `unit`.
 dmat3 frame_around(const dvec3& unit) {
     const dvec3 helper = std::abs(unit.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
@@ -78,6 +103,7 @@ public:
         transform_ = scene_.transforms[primitive.transform];
         linear_ = dmat3(transform_);
         mirrored_ = glm::determinant(linear_) < 0;
+        uses_uv_ = uses_uv(scene_, scene_.materials[primitive.material]);
         lowered_ = {0, primitive.material, static_cast<std::uint32_t>(out_.shape_data.size()), 0};
         switch (primitive.kind) {
             case PrimitiveKind::triangle:
@@ -139,7 +165,17 @@ private:
                 const dvec3 n(glm::normalize(dvec3(scene_.normals[triangle.normals[corner]])));
                 push(vec3(normal_from_object * n));
             }
-            lowered_.flags = SAHL_PRIMITIVE_SMOOTH;
+            lowered_.flags |= SAHL_PRIMITIVE_SMOOTH;
+        }
+        // The corners' order decides which barycentrics u and v are.
+        if (uses_uv_ && (triangle.has_uv || mirrored_)) {
+            const glm::vec2 barycentrics[3] = {{0, 0}, {1, 0}, {0, 1}};
+            for (const int corner : order) {
+                const glm::vec2 uv =
+                    triangle.has_uv ? scene_.uvs[triangle.uvs[corner]] : barycentrics[corner];
+                out_.shape_data.insert(out_.shape_data.end(), {uv.x, uv.y});
+            }
+            lowered_.flags |= SAHL_PRIMITIVE_UV;
         }
         lowered_.kind = SAHL_KIND_TRIANGLE;
         bounds_ = point_bounds(points_);
@@ -152,18 +188,30 @@ private:
                 transform_point(transform_, dvec3(scene_.polygon_vertices[polygon.first_vertex + i])));
         }
         if (mirrored_) {
-            std::reverse(points_.begin(), points_.end());
+            std::reverse(points_.begin() + 1, points_.end());
         }
         push_exact(newell_normal(points_));
         push_exact(dvec3(points_[0]));
         const auto first_vertex = static_cast<std::uint32_t>(out_.polygon_vertices.size() / 3);
         out_.shape_data.push_back(std::bit_cast<float>(first_vertex));
         out_.shape_data.push_back(std::bit_cast<float>(polygon.vertex_count));
+        push_uv_axes(polygon);
         for (const vec3& p : points_) {
             out_.polygon_vertices.insert(out_.polygon_vertices.end(), {p.x, p.y, p.z});
         }
         lowered_.kind = SAHL_KIND_POLYGON;
         bounds_ = point_bounds(points_);
+    }
+
+    /// What u and v are the products of with a vector from the (transformed) first vertex.
+    void push_uv_axes(const Polygon& polygon) {
+        const auto first = scene_.polygon_vertices.begin() + polygon.first_vertex;
+        const std::vector<vec3> outline(first, first + polygon.vertex_count);
+        const dvec3 u = first_edge(outline);
+        const dvec3 v = glm::cross(newell_normal(outline), u);
+        const dmat3 axes_from_object = glm::transpose(glm::inverse(linear_));
+        push_exact(axes_from_object * u);
+        push_exact(axes_from_object * v);
     }
 
     void add_sphere(const Sphere& sphere) {
@@ -181,7 +229,7 @@ private:
         for (int k = 0; k < 3; ++k) {
             half_extent[k] = glm::length(glm::row(world_from_unit, k));
         }
-        if (deviation <= 1e-12 * radius2) {
+        if (deviation <= 1e-12 * radius2 && !uses_uv_) {
             lowered_.kind = SAHL_KIND_SPHERE;
             push_exact(center);
             push_exact(std::sqrt(radius2));
@@ -198,7 +246,7 @@ private:
         const dvec3 axis = (turned ? cone.base : cone.apex) - base;
         const double base_radius = turned ? cone.apex_radius : cone.base_radius;
         const double apex_radius = turned ? cone.base_radius : cone.apex_radius;
-        const dmat3 frame = frame_around(glm::normalize(axis));
+        const dmat3 frame = frame_around(glm::normalize(cone.apex - cone.base));
         const dmat3 world_from_cone = linear_ * dmat3(frame[0] * base_radius, frame[1] * base_radius, axis);
         const dvec3 world_base = transform_point(transform_, base);
         const dvec3 world_apex = transform_point(transform_, base + axis);
@@ -255,6 +303,7 @@ private:
     dmat4 transform_{1};
     dmat3 linear_{1};
     bool mirrored_ = false;
+    bool uses_uv_ = false;
     device::DevicePrimitive lowered_{};
     Bounds bounds_{};
     std::vector<vec3> points_;
@@ -266,28 +315,59 @@ void copy3(float (&to)[3], const vec3& from) {
     to[2] = from.z;
 }
 
-device::DeviceMaterial lower_material(const Material& material) {
+device::DeviceMaterial lower_material(const Material& material, const vec3& ambient_light) {
     device::DeviceMaterial out{};
-    copy3(out.emitted, material.ambient + material.emission);
+    copy3(out.ambient, material.ambient * ambient_light);
+    copy3(out.emission, material.emission);
+    copy3(out.attenuation, material.reflection_attenuation);
     copy3(out.diffuse, material.diffuse);
     copy3(out.specular, material.specular);
     copy3(out.reflection, material.reflection);
     copy3(out.transmission, material.transmission);
     out.shininess = material.shininess;
     out.ior = material.ior;
+    out.ior_outside = material.ior_outside;
+    out.ambient_texture = material.textures.ambient;
+    out.diffuse_texture = material.textures.diffuse;
+    out.specular_texture = material.textures.specular;
+    out.emission_texture = material.textures.emission;
+    out.reflection_texture = material.textures.reflection;
     out.flags = (material.two_sided ? SAHL_MATERIAL_TWO_SIDED : 0U) |
                 (material.specular_model == SpecularModel::blinn ? SAHL_MATERIAL_BLINN : 0U) |
-                (material.transmission != vec3(0) ? SAHL_MATERIAL_TRANSMITS : 0U);
+                (material.transmission != vec3(0) ? SAHL_MATERIAL_TRANSMITS : 0U) |
+                (is_textured(material) ? SAHL_MATERIAL_TEXTURED : 0U) |
+                (material.reflection_attenuation != vec3(1, 0, 0) ? SAHL_MATERIAL_ATTENUATES : 0U);
     return out;
 }
 
 device::DeviceLight lower_light(const Light& light) {
     device::DeviceLight out{};
-    const bool point = light.kind == LightKind::point;
-    out.kind = point ? SAHL_LIGHT_POINT : SAHL_LIGHT_DIRECTIONAL;
-    copy3(out.position, vec3(point ? light.position : glm::normalize(light.position)));
+    const bool directional = light.kind == LightKind::directional;
+    out.kind = directional                      ? SAHL_LIGHT_DIRECTIONAL
+               : light.kind == LightKind::point ? SAHL_LIGHT_POINT
+                                                : SAHL_LIGHT_SPOT;
+    copy3(out.position, vec3(directional ? glm::normalize(light.position) : light.position));
+    copy3(out.direction, vec3(glm::normalize(light.direction)));
+    out.cos_inner = static_cast<float>(std::cos(glm::radians(light.inner_angle)));
+    out.cos_outer = static_cast<float>(std::cos(glm::radians(light.outer_angle)));
     copy3(out.color, light.color);
     copy3(out.attenuation, light.attenuation);
+    return out;
+}
+
+device::DeviceTexture lower_texture(const Texture& texture) {
+    device::DeviceTexture out{};
+    out.pattern = texture.pattern == Pattern::checker ? SAHL_PATTERN_CHECKER : SAHL_PATTERN_GRADIENT;
+    out.space = texture.space == TextureSpace::position ? SAHL_TEXTURE_POSITION : SAHL_TEXTURE_UV;
+    copy3(out.color0, texture.colors[0]);
+    copy3(out.color1, texture.colors[1]);
+    for (int k = 0; k < 3; ++k) {
+        const TwoFloats origin = split(texture.origin[k]), extent = split(texture.extent[k]);
+        out.origin[k] = origin.high;
+        out.origin[k + 3] = origin.low;
+        out.extent[k] = extent.high;
+        out.extent[k + 3] = extent.low;
+    }
     return out;
 }
 
@@ -311,7 +391,10 @@ LoweredScene lower_scene(const Scene& scene) {
         throw Error(ExitCode::scene, "the scene's shapes need more than 2^32 numbers; split the scene");
     }
     for (const Material& material : scene.materials) {
-        out.materials.push_back(lower_material(material));
+        out.materials.push_back(lower_material(material, scene.ambient));
+    }
+    for (const Texture& texture : scene.textures) {
+        out.textures.push_back(lower_texture(texture));
     }
     for (const Light& light : scene.lights) {
         out.lights.push_back(lower_light(light));

@@ -1,5 +1,5 @@
-// From Scene to the arrays that kernels read: world-space shapes, materials, lights, and what the
-// BVH builder needs of each primitive.
+// From Scene to the arrays that kernels read: shapes in the space of the world or their group,
+// materials, lights, and what the BVH builder needs of each primitive.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ struct LoweredScene {
     std::vector<float> shape_data;                    ///< as device_types.h lays it out
     std::vector<float> polygon_vertices;              ///< 3 floats a vertex
     std::vector<device::DeviceMaterial> materials;
+    std::vector<device::DeviceTexture> textures;
     std::vector<device::DeviceLight> lights;
-    std::vector<BuildPrimitive> build_primitives;
+    std::vector<BuildPrimitive> build_primitives;  ///< by id
 };
 
 /// Transforms are applied in double precision and rounded once; normals go by the inverse

@@ -30,7 +30,7 @@ RayQueues::RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std:
                            Buffer(device, SAHL_RAY_UINTS * array, name + " ids")});
     }
     hits = Buffer(device, SAHL_HIT_FLOATS * array, "hits");
-    hit_primitives = Buffer(device, array, "hit primitives");
+    hit_ids = Buffer(device, SAHL_HIT_UINTS * array, "hit ids");
     shadow_surfaces = Buffer(device, SAHL_SURFACE_FLOATS * array, "shadow surfaces");
     shadow_light = Buffer(device, 3 * light_count * array, "shadow light");
     children = Buffer(device, 2 * SAHL_RAY_FLOATS * array, "children");

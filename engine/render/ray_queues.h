@@ -30,7 +30,7 @@ struct RayQueues {
     /// The batch in work and those that wait: a generation leaves at most one waiting, so depth + 1.
     std::vector<RayBatch> batches;
     Buffer hits;
-    Buffer hit_primitives;
+    Buffer hit_ids;
     Buffer shadow_surfaces;
     Buffer shadow_light;  ///< three arrays a light
     Buffer children;      ///< two batches' arrays: reflected, transmitted

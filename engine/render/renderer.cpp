@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/error.h"
+#include "engine/render/trace_aovs.h"
 #include "engine/render/two_floats.h"
 #include "engine/render/wavefront.h"
 
@@ -38,6 +39,20 @@ device::CameraConstants camera_constants(const Camera& camera, const Resolution&
     return out;
 }
 
+/// The pixels that `settings` ask for.
+Crop crop_of(const RenderSettings& settings) {
+    const Resolution& resolution = settings.resolution;
+    const Crop crop = settings.crop.value_or(Crop{0, 0, resolution.width, resolution.height});
+    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > resolution.width || crop.y1 > resolution.height) {
+        throw Error(ExitCode::usage, "the crop must lie inside the image");
+    }
+    return crop;
+}
+
+std::uint64_t pixel_count(const Crop& crop) {
+    return std::uint64_t(crop.x1 - crop.x0) * std::uint64_t(crop.y1 - crop.y0);
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -47,6 +62,13 @@ struct Renderer::Impl {
           device_scene(make_device_scene(on, scene)),
           program(on, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}),
           kernels(program) {}
+
+    /// Rays of a batch for a wave of `samples` or more waves.
+    std::uint32_t capacity(const RenderSettings& settings, std::uint64_t samples) const {
+        const std::uint64_t launchable = std::uint64_t{device.max_work_items()} * device.rays_per_item();
+        return static_cast<std::uint32_t>(
+            std::min({std::uint64_t{settings.ray_budget}, samples, launchable}));
+    }
 
     Device& device;
     std::vector<Camera> cameras;
@@ -63,28 +85,29 @@ const BvhStatistics& Renderer::bvh_statistics() const { return impl_->device_sce
 
 RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
                                   const ProgressCallback& progress) {
-    const Resolution& resolution = settings.resolution;
-    const Crop crop = settings.crop.value_or(Crop{0, 0, resolution.width, resolution.height});
-    if (crop.x0 < 0 || crop.y0 < 0 || crop.x1 > resolution.width || crop.y1 > resolution.height ||
-        film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
-        throw Error(ExitCode::usage,
-                    "the crop must lie inside the image and the film must have the crop's size");
+    const Crop crop = crop_of(settings);
+    if (film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
+        throw Error(ExitCode::usage, "the film must have the crop's size");
     }
-    const std::uint64_t samples =
-        std::uint64_t(film.width()) * std::uint64_t(film.height()) * std::uint64_t(settings.spp);
-    const std::uint64_t launchable =
-        std::uint64_t{impl_->device.max_work_items()} * impl_->device.rays_per_item();
-    const auto capacity =
-        static_cast<std::uint32_t>(std::min({std::uint64_t{settings.ray_budget}, samples, launchable}));
-    RayQueues queues(impl_->device, capacity, settings.depth, impl_->device_scene.constants.light_count);
+    const device::CameraConstants camera =
+        camera_constants(impl_->cameras[settings.camera], settings.resolution);
+    const std::uint64_t samples = pixel_count(crop) * std::uint64_t(settings.spp);
+    RayQueues queues(impl_->device, impl_->capacity(settings, samples), settings.depth,
+                     impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    RenderStatistics statistics =
-        trace_waves(wavefront, camera_constants(impl_->cameras[settings.camera], resolution), settings, crop,
-                    film, progress);
+    RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress);
     impl_->program.store_binary();  // now that each kernel has been compiled
     return statistics;
 }
 
-std::vector<AovImage> Renderer::render_aovs(const RenderSettings&, std::span<const Aov>) { return {}; }
+std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std::span<const Aov> aovs) {
+    const Crop crop = crop_of(settings);
+    const device::CameraConstants camera =
+        camera_constants(impl_->cameras[settings.camera], settings.resolution);
+    const std::uint64_t pixels = pixel_count(crop);
+    RayQueues queues(impl_->device, impl_->capacity(settings, pixels), 0, 0);
+    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
+    return trace_aovs(wavefront, camera, settings, crop, aovs);
+}
 
 }  // namespace sahl

@@ -61,15 +61,16 @@ public:
         const Launch block_launch{blocks, in_work.generation, count};
 
         kernels_.intersect.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices,
-                                  scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives,
-                                  q.capacity, count);
-        kernels_.shade.launch(rays, scene_.primitives, scene_.shape_data, scene_.materials, scene_.lights,
-                              scene_.constants, batch.rays, batch.ids, q.hits, q.hit_primitives, out.light,
-                              out.pixels, q.shadow_surfaces, q.shadow_light, q.children, q.child_ids,
-                              q.outcomes, q.capacity, count, spawn ? 1U : 0U);
-        kernels_.shadow.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.primitives,
-                               scene_.materials, scene_.lights, scene_.constants, q.hit_primitives,
-                               q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, count);
+                                  scene_.instances, scene_.constants, batch.rays, batch.ids, q.hits,
+                                  q.hit_ids, q.capacity, count);
+        kernels_.shade.launch(rays, scene_.primitives, scene_.shape_data, scene_.instances, scene_.materials,
+                              scene_.textures, scene_.lights, scene_.constants, batch.rays, batch.ids, q.hits,
+                              q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light, q.children,
+                              q.child_ids, q.outcomes, q.capacity, count, spawn ? 1U : 0U);
+        kernels_.shadow.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.instances,
+                               scene_.primitives, scene_.materials, scene_.lights, scene_.constants,
+                               q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
+                               q.capacity, count);
         kernels_.count_children.launch(block_launch, q.outcomes, q.block_counts, q.block_shadow_rays, count,
                                        blocks);
         kernels_.sum_children.launch({1, in_work.generation, blocks}, q.block_counts, q.block_shadow_rays,
@@ -92,6 +93,8 @@ private:
     std::uint32_t rays_per_item_;
 };
 
+}  // namespace
+
 device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop) {
     device::WaveConstants wave{};
     wave.spp = static_cast<std::uint32_t>(settings.spp);
@@ -101,10 +104,9 @@ device::WaveConstants wave_constants(const RenderSettings& settings, const Crop&
     wave.crop_height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     wave.seed_low = static_cast<std::uint32_t>(settings.seed);
     wave.seed_high = static_cast<std::uint32_t>(settings.seed >> 32U);
+    wave.samples = wave.spp;
     return wave;
 }
-
-}  // namespace
 
 WavefrontKernels::WavefrontKernels(Program& program)
     : generate(program.kernel("generate")),

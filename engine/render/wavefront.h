@@ -24,6 +24,9 @@ struct Wavefront {
     RayQueues& queues;
 };
 
+/// All samples of the crop's pixels as a wave; `first` and `count` are still to be filled in.
+device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop);
+
 /// Generates all camera samples of `settings`, wave by wave, follows their ray trees and adds every
 /// contribution to `film`.
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,

@@ -22,7 +22,7 @@ constexpr const char* kKernels = R"(
 #include "kernels/surface.h"
 kernel void reflect_light(const global DeviceMaterial* material, const global float4* ns, const global float4* wi,
                           const global float4* wo, global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) { vstore3(phong_light(material, ns[i].xyz, wi[i].xyz, wo[i].xyz), i, out); }
+    TEST_FOR_EACH(i, count) { vstore3(phong_light(material, load3(material->diffuse), load3(material->specular), ns[i].xyz, wi[i].xyz, wo[i].xyz), i, out); }
 }
 kernel void bend(const global float4* d, const global float4* n, global float* out, const uint count) {
     TEST_FOR_EACH(i, count) {
@@ -39,7 +39,7 @@ kernel void arrive(const global DeviceLight* lights, const uint light, const glo
     TEST_FOR_EACH(i, count) {
         float3 to_light = vector_to_light(lights + light, position[i].xyz);
         vstore3(to_light, 3u * i, out);
-        vstore3(arriving_light(lights + light, sqrt(dot3(to_light, to_light))), 3u * i + 1u, out);
+        vstore3(arriving_light(lights + light, normalize3(to_light), sqrt(dot3(to_light, to_light))), 3u * i + 1u, out);
         vstore3((float3)(shadow_t_max(lights + light)), 3u * i + 2u, out);
     }
 }
@@ -171,8 +171,9 @@ TEST_CASE("total reflection begins at the critical angle") {
 
 TEST_CASE("light arrives with its distance's attenuation") {
     KernelRunner runner(kKernels);
-    device::DeviceLight point{{1, 2, 3}, SAHL_LIGHT_POINT, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0};
-    device::DeviceLight sun{{0, 0.6F, 0.8F}, SAHL_LIGHT_DIRECTIONAL, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0};
+    device::DeviceLight point{{1, 2, 3}, SAHL_LIGHT_POINT, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0, {}, 0};
+    device::DeviceLight sun{
+        {0, 0.6F, 0.8F}, SAHL_LIGHT_DIRECTIONAL, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0, {}, 0};
     Buffer lights = runner.upload(std::vector{point, sun});
     Random random(33);
     std::vector<Float4> positions{{1, 2, 2, 0}};

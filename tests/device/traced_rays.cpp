@@ -12,8 +12,8 @@ constexpr const char* kKernels = R"(
 
 kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices, const global uint* children,
                         const uint child_count, const float extent, const global float* rays, const global uint* ray_ids,
-                        global float* hits, global uint* hit_primitives, const uint count) {
-    const Bvh bvh = {0, leaves, polygon_vertices, extent};
+                        global float* hits, global uint* hit_ids, const uint count) {
+    const Bvh bvh = {0, leaves, polygon_vertices, 0, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         RayShear shear = ray_shear(ray.origin, ray.direction);
@@ -22,15 +22,14 @@ kernel void brute_force(const global uchar* leaves, const global float* polygon_
         for (uint k = 0; k < child_count; ++k) {
             intersect_leaf(&bvh, children[k], &ray, &shear, &boxes, &state, false);
         }
-        store_soa3(hits, SAHL_HIT_T, count, i, (float3)(state.t, state.u, state.v));
-        hit_primitives[i] = state.primitive;
+        store_hit(hits, hit_ids, count, i, &state);
     }
 }
 
 kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                      const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
+                      const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
                       global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, extent};
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         out[i] = any_hit(&bvh, &ray, t_max);
@@ -38,9 +37,9 @@ kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, c
 }
 
 kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                 const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
+                 const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
                  const uint longest, global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, extent};
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         global uint* crossings = out + (size_t)i * (1u + 2u * longest);
@@ -62,14 +61,16 @@ static inline void store_parts(global float* to, real3 v) {
     vstore3(round3(v - convert_real3(rounded)), 1, to);
 }
 
-kernel void surfaces(const global DevicePrimitive* primitives, const global float* shape_data, const global float* rays,
-                     const global float* hits, const global uint* hit_primitives, global float* out, const uint count) {
+kernel void surfaces(const global DevicePrimitive* primitives, const global float* shape_data,
+                     const global DeviceInstance* instances, const global float* rays, const global float* hits,
+                     const global uint* hit_ids, global float* out, const uint count) {
+    const Shapes shapes = {primitives, shape_data, instances};
     TEST_FOR_EACH(i, count) {
-        if (hit_primitives[i] == SAHL_NO_PRIMITIVE) { continue; }
+        if (hit_ids[i] == SAHL_NO_PRIMITIVE) { continue; }
         float3 hit = load_soa3(hits, SAHL_HIT_T, count, i);
         real3 o = convert_real3(load_soa3(rays, SAHL_RAY_ORIGIN, count, i));
         real3 d = convert_real3(load_soa3(rays, SAHL_RAY_DIRECTION, count, i));
-        Surface s = surface_at(primitives, shape_data, hit_primitives[i], o, d, hit.x, hit.y, hit.z);
+        Surface s = surface_at(&shapes, hit_ids[count + i], hit_ids[i], o, d, hit.x, hit.y, hit.z);
         store_parts(out + 19 * i, s.position);
         store_parts(out + 19 * i + 6, s.ng);
         store_parts(out + 19 * i + 12, s.ns);
@@ -113,7 +114,7 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays) {
     Batch batch{Buffer(device(), SAHL_RAY_FLOATS * count * sizeof(float), "rays"),
                 Buffer(device(), SAHL_RAY_UINTS * count * sizeof(std::uint32_t), "ray ids"),
                 Buffer(device(), SAHL_HIT_FLOATS * count * sizeof(float), "hits"),
-                Buffer(device(), count * sizeof(std::uint32_t), "hit primitives"),
+                Buffer(device(), SAHL_HIT_UINTS * count * sizeof(std::uint32_t), "hit ids"),
                 static_cast<std::uint32_t>(count)};
     const auto floats = batch.rays.map<float>(MapMode::write, SAHL_RAY_FLOATS * count);
     const auto ids = batch.ids.map<std::uint32_t>(MapMode::write, SAHL_RAY_UINTS * count);
@@ -155,8 +156,8 @@ std::vector<TestHit> RayTracer::download(Batch& batch) {
 
 std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
-    runner_.run("intersect", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.constants,
-                batch.rays, batch.ids, batch.hits, batch.primitives, batch.count);
+    runner_.run("intersect", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                scene.constants, batch.rays, batch.ids, batch.hits, batch.primitives, batch.count);
     return download(batch);
 }
 
@@ -172,7 +173,7 @@ std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vecto
 std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                             float t_max) {
     Batch batch = upload(rays);
-    runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+    runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
                 scene.constants.extent, batch.rays, batch.ids, t_max, batch.primitives);
     return KernelRunner::download<Occlusion>(batch.primitives, batch.count);
 }
@@ -181,7 +182,7 @@ std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vecto
                                       float t_max) {
     Batch batch = upload(rays);
     Buffer out(device(), batch.count * sizeof(TestWalk), "crossings");
-    runner_.run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+    runner_.run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
                 scene.constants.extent, batch.rays, batch.ids, t_max, TestWalk::longest, out);
     return KernelRunner::download<TestWalk>(out, batch.count);
 }
@@ -191,8 +192,8 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
     Batch batch = upload(rays, hits);
     constexpr std::size_t kFloats = 19;
     Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
-    runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, batch.rays, batch.hits,
-                batch.primitives, out);
+    runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, scene.instances, batch.rays,
+                batch.hits, batch.primitives, out);
     const std::vector<float> parts = KernelRunner::download<float>(out, kFloats * batch.count);
     std::vector<TestSurface> result;
     for (std::size_t i = 0; i < batch.count; ++i) {
@@ -214,12 +215,13 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
            child_ids = buffer(std::size_t{2} * SAHL_RAY_UINTS);
     Buffer outcomes = buffer(1);
     // run() adds the count, which as shade's last parameter says: do spawn.
-    runner_.run("shade", count, scene.primitives, scene.shape_data, scene.materials, scene.lights,
-                scene.constants, batch.rays, batch.ids, batch.hits, batch.primitives, light, pixels, surfaces,
-                brought, children, child_ids, outcomes, batch.count, batch.count);
-    runner_.run("shadow", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.primitives,
-                scene.materials, scene.lights, scene.constants, batch.primitives, surfaces, brought, outcomes,
-                light, batch.count);
+    runner_.run("shade", count, scene.primitives, scene.shape_data, scene.instances, scene.materials,
+                scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
+                batch.primitives, light, pixels, surfaces, brought, children, child_ids, outcomes,
+                batch.count, batch.count);
+    runner_.run("shadow", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                scene.primitives, scene.materials, scene.lights, scene.constants, batch.primitives, surfaces,
+                brought, outcomes, light, batch.count);
 
     const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * count);
     const auto ids = child_ids.map<std::uint32_t>(MapMode::read, std::size_t{2} * SAHL_RAY_UINTS * count);

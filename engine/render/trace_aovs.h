@@ -1,0 +1,16 @@
+// The AOVs of an image: one ray a pixel to its first hit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/film/aov.h"
+#include "engine/render/wavefront.h"
+
+namespace sahl {
+
+/// `aovs` of sample 0 of the crop's pixels, in their order.
+std::vector<AovImage> trace_aovs(Wavefront& wavefront, const device::CameraConstants& camera,
+                                 const RenderSettings& settings, const Crop& crop, std::span<const Aov> aovs);
+
+}  // namespace sahl
