@@ -2,17 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace sahl::cli {
 
-/// The name of each depth's image: `pattern` with `{depth}` filled in, or `SCENE_STEM.png` in the
-/// current folder. Throws Error(usage) for other placeholders, and when several depths would go
-/// into one file.
-std::vector<std::filesystem::path> output_names(const std::optional<std::string>& pattern,
-                                                const std::filesystem::path& scene,
-                                                const std::vector<int>& depths);
+/// For each depth the names of its images: every pattern with `{depth}` filled in, or
+/// `SCENE_STEM.png` in the current folder where there is no pattern. Throws Error(usage) for other
+/// placeholders, and when two images would go into one file.
+std::vector<std::vector<std::filesystem::path>> output_names(const std::vector<std::string>& patterns,
+                                                             const std::filesystem::path& scene,
+                                                             const std::vector<int>& depths);
 
 }  // namespace sahl::cli

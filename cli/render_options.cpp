@@ -1,0 +1,123 @@
+#include "cli/render_options.h"
+
+#include <algorithm>
+
+namespace sahl::cli {
+
+namespace {
+
+constexpr double most_stops = 100;
+constexpr int most_samples = 16384;  // more could overflow the film's fixed point
+
+std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
+    Choices<Aov> choices;
+    std::vector<Aov> all;
+    for (const AovName& name : aov_names) {
+        choices.emplace_back(name.name, name.aov);
+        all.push_back(name.aov);
+    }
+    if (text == "all") return all;
+    std::vector<Aov> aovs;
+    for (const std::string_view piece : split(text, ',')) {
+        const Aov aov = read_choice<Aov>(option, piece, choices);
+        if (std::find(aovs.begin(), aovs.end(), aov) != aovs.end()) refuse(option, text, "each AOV once");
+        aovs.push_back(aov);
+    }
+    return aovs;
+}
+
+void add_image_options(CLI::App& command, RenderOptions& options) {
+    add_value(
+        command, "--camera", "NAME", [&options](const std::string& text) { options.camera = text; },
+        "one of the scene's cameras (default: its first)");
+    add_value(
+        command, "--size", "WxH",
+        [&options](const std::string& text) { options.size = read_size("--size", text); },
+        "pixels (default: the scene's)");
+    add_value(
+        command, "--depth", "N[,N...]",
+        [&options](const std::string& text) { options.depths = read_depths("--depth", text); },
+        "generations of rays after the camera's, 0 to 64 (default: the scene's)");
+    add_value(
+        command, "--spp", "N",
+        [&options](const std::string& text) {
+            options.spp = read_whole<int>("--spp", text, 1, most_samples);
+        },
+        "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
+    add_value(
+        command, "--seed", "N",
+        [&options](const std::string& text) {
+            options.seed =
+                read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
+        },
+        "of the random numbers (default: 0)");
+    add_value(
+        command, "--crop", "X0,Y0,X1,Y1",
+        [&options](const std::string& text) { options.crop = read_crop("--crop", text); },
+        "only these pixels; X1 and Y1 are just outside");
+}
+
+void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
+    OptionWords words{{"all"}, true};
+    for (const AovName& name : aov_names) words.words.emplace_back(name.name);
+    CLI::Option* option = add_value(
+        command, "--aov", "LIST", [&aovs](const std::string& text) { aovs = read_aovs("--aov", text); },
+        fmt::format("channels beside the image in EXR files: {}", either(words.words)));
+    set_words(*option, std::move(words));
+}
+
+void check_compression_name(const std::string& text) {
+    const std::vector<std::string> names = compression_names();
+    if (std::find(names.begin(), names.end(), text.substr(0, text.find(':'))) == names.end()) {
+        refuse("--compression", text, fmt::format("one of {}", fmt::join(names, ", ")));
+    }
+}
+
+void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
+    add_choice<Transfer>(command, "--transfer", "CURVE", encoding.transfer,
+                         {{"srgb", Transfer::srgb}, {"linear", Transfer::linear}},
+                         "(default: srgb for 8 and 16 bits, linear for floats)");
+    add_choice<Rounding>(command, "--rounding", "RULE", encoding.rounding,
+                         {{"round", Rounding::round}, {"floor", Rounding::floor}},
+                         "for 8 and 16 bits (default: round)");
+    add_value(
+        command, "--exposure", "STOPS",
+        [&encoding](const std::string& text) {
+            encoding.exposure = static_cast<float>(read_number("--exposure", text, -most_stops, most_stops));
+        },
+        "makes the image 2^STOPS as bright (default: 0)");
+    add_choice<PixelType>(command, "--pixel-type", "TYPE", encoding.pixel_type,
+                          {{"half", PixelType::half},
+                           {"float", PixelType::float32},
+                           {"uint8", PixelType::uint8},
+                           {"uint16", PixelType::uint16}},
+                          "(default: the format's)");
+    CLI::Option* compression = add_value(
+        command, "--compression", "NAME[:LEVEL]",
+        [&encoding](const std::string& text) {
+            check_compression_name(text);
+            encoding.compression = text;
+        },
+        fmt::format("{}; levels: jpeg:1..100, zip:0..9 in PNG, dwaa:1..500 (default: the format's)",
+                    either(compression_names())));
+    set_words(*compression, {compression_names()});
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+    command.add_option("SCENE", options.scene, "scene file: .json, .nff or .test")
+        ->required()
+        ->type_name("FILE");
+    add_values(
+        command, "-o,--output", "FILE",
+        [&options](const std::string& text) { options.outputs.push_back(text); },
+        "image, may be given several times; {depth} stands for the depth (default: the scene's name, .png, "
+        "here)");
+    add_scene_options(command, options.loading);
+    add_image_options(command, options);
+    add_aov_option(command, options.aovs);
+    add_encoding_options(command, options.encoding);
+}
+
+}  // namespace sahl::cli

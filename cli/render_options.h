@@ -1,0 +1,29 @@
+// What `sahl render` is asked to do.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace sahl::cli {
+
+struct RenderOptions {
+    std::string scene;
+    LoadOptions loading;
+    std::vector<std::string> outputs;
+    std::optional<std::string> camera;
+    std::optional<Resolution> size;
+    std::optional<std::vector<int>> depths;
+    std::optional<Crop> crop;
+    int spp = 1;
+    std::uint64_t seed = 0;
+    std::vector<Aov> aovs;
+    OutputSettings encoding;
+};
+
+/// The scene, the images, their content and their encoding. `options` has to outlive `command`.
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+}  // namespace sahl::cli

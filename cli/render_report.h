@@ -1,0 +1,47 @@
+// What `sahl render` says of its images: on standard error, as JSON events, in the files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/render_options.h"
+
+namespace sahl::cli {
+
+/// One image to be.
+struct Output {
+    std::filesystem::path path;
+    OutputSettings encoding;
+};
+
+/// One finished image, in all its files.
+struct Rendered {
+    std::vector<Output> outputs;
+    std::string camera;
+    RenderSettings settings;
+    Resolution size;  ///< of the file: the crop's
+    RenderStatistics statistics;
+    std::uint64_t non_finite = 0;
+    std::uint64_t clamped = 0;
+};
+
+/// The first event of `--json`.
+void print_start(const RenderOptions& options, const RenderSettings& settings, const std::vector<int>& depths,
+                 const std::string& camera, const DeviceInfo& device, const BvhStatistics& bvh);
+
+/// The event of a finished image.
+void print_image(const Rendered& image);
+
+/// The line of a finished image on standard error.
+void say_image(const Rendered& image);
+
+/// Warns of contributions that the film could not take as they were.
+void warn_of_lost_light(const Rendered& image);
+
+/// What the files say about themselves.
+std::vector<std::pair<std::string, std::string>> metadata(const Rendered& image, const RenderOptions& options,
+                                                          const DeviceInfo& device);
+
+}  // namespace sahl::cli
