@@ -16,6 +16,7 @@ struct Command {
 /// `common` has to outlive the command.
 Command add_render_command(CLI::App& app, CommonOptions& common);
 Command add_compare_command(CLI::App& app, CommonOptions& common);
+Command add_convert_command(CLI::App& app, CommonOptions& common);
 Command add_devices_command(CLI::App& app, CommonOptions& common);
 
 }  // namespace sahl::cli

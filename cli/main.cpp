@@ -124,7 +124,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     add_device_options(app, common);
     add_common_options(app, common);
     const std::vector<Command> commands{add_render_command(app, common), add_compare_command(app, common),
-                                        add_devices_command(app, common)};
+                                        add_convert_command(app, common), add_devices_command(app, common)};
     try {
         parse(app, argc, argv);
     } catch (const CLI::CallForHelp&) {

@@ -44,7 +44,10 @@ const Format& format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-void check_scene_format(const std::filesystem::path& path) { format_of(path); }
+void check_scene_output(const std::filesystem::path& path) {
+    format_of(path);
+    check_output_file(path);
+}
 
 void write_scene(const std::filesystem::path& path, const Scene& scene) {
     const std::string text = format_of(path).write(scene);

@@ -8,8 +8,9 @@
 namespace sahl {
 
 /// Throws Error(usage) that lists the formats unless the extension of `path` names one that scenes
-/// are written in: `.json`, `.nff`, `.test`.
-void check_scene_format(const std::filesystem::path& path);
+/// are written in (`.json`, `.nff`, `.test`), Error(output) if it can be seen beforehand that `path`
+/// cannot be written. Changes nothing.
+void check_scene_output(const std::filesystem::path& path);
 
 /// Writes a scene as `.json` (Sahl scene), `.nff` (Haines' Neutral File Format) or `.test` (CSE 167
 /// text format) so that load_scene() gives the same scene again; the file is whole or not there.

@@ -271,8 +271,9 @@ TEST_CASE("Scenes are written by their extension", "[scene][write]") {
         CHECK(error.code() == ExitCode::usage);
         CHECK_THAT(error.what(), Catch::Contains("'.obj'; formats are .json (Sahl scene), .nff"));
     }
-    CHECK_THROWS_AS(check_scene_format("scene"), Error);
-    CHECK_NOTHROW(check_scene_format("scene.JSON"));
+    CHECK_THROWS_AS(check_scene_output("scene"), Error);
+    CHECK_THROWS_AS(check_scene_output(folder / "a.nff/b.nff"), Error);
+    CHECK_NOTHROW(check_scene_output("scene.JSON"));
     // A refused scene leaves nothing behind.
     CHECK_THROWS_AS(write_scene(folder / "b.nff", other), Error);
     CHECK(folder.entries() == 2);
