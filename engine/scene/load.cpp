@@ -1,26 +1,25 @@
 #include "engine/scene/load.h"
 
-#include <algorithm>
-#include <string>
-
 #include "engine/core/error.h"
 #include "engine/scene/scene_cse167.h"
+#include "engine/scene/scene_format.h"
+#include "engine/scene/scene_json.h"
 #include "engine/scene/scene_nff.h"
 #include "engine/scene/text_reader.h"
 
 namespace sahl {
 
-Scene load_scene(const std::filesystem::path& path, const LoadOptions&) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    const bool nff = extension == ".nff";
-    if (!nff && extension != ".test") {
-        throw Error(ExitCode::usage, path.string() + ": no scene format has the extension '" + extension +
-                                         "'; formats are .nff (Neutral File Format) and .test (CSE 167)");
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+    const std::optional<SceneFormat> format = scene_format(path);
+    if (!format) throw Error(ExitCode::usage, path.string() + ": " + unknown_scene_format(path));
+    if (*format == SceneFormat::json) return read_scene_json(path, read_scene_file(path), options);
+    if (!options.parameters.empty()) {
+        const auto& [name, value] = options.parameters.front();
+        throw Error(ExitCode::usage, "--set " + name + "=" + value + ": " + path.string() +
+                                         " has no parameters; only Sahl scenes (.json) have them");
     }
     TextReader reader = TextReader::from_file(path);
-    return nff ? read_nff(reader) : read_cse167(reader);
+    return *format == SceneFormat::nff ? read_nff(reader) : read_cse167(reader);
 }
 
 }  // namespace sahl

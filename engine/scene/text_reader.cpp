@@ -46,8 +46,42 @@ bool begins_number(std::string_view word) {
 std::string in_quotes(std::string_view word) {
     constexpr std::size_t longest = 40;
     std::string text = "'";
-    for (const char c : word.substr(0, longest)) text += is_control(c) ? '?' : c;
-    return text + (word.size() > longest ? "…'" : "'");
+    std::size_t length = std::min(word.size(), longest);
+    // Not within a character of UTF-8.
+    while (length < word.size() && length > 0 &&
+           (static_cast<unsigned char>(word[length]) & 0xc0U) == 0x80U) {
+        --length;
+    }
+    for (const char c : word.substr(0, length)) text += is_control(c) ? '?' : c;
+    return text + (word.size() > length ? "…'" : "'");
+}
+
+std::string read_scene_file(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) {
+        fail_unreadable(path, "there is no such file; check the path");
+    }
+    if (error) fail_unreadable(path, error.message());
+    if (status.type() == std::filesystem::file_type::directory) {
+        fail_unreadable(path, "it is a folder; name a file in it");
+    }
+
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) fail_unreadable(path, fmt::format("{}; check its permissions", std::strerror(errno)));
+    std::string text;
+    // Not by the file's size: a pipe has none.
+    constexpr std::size_t chunk = std::size_t{1} << 20;
+    while (file) {
+        const std::size_t old_size = text.size();
+        if (old_size > largest_file) fail_unreadable(path, "it is larger than 1 GiB; split the scene");
+        text.resize(old_size + chunk);
+        file.read(text.data() + old_size, static_cast<std::streamsize>(chunk));
+        text.resize(old_size + static_cast<std::size_t>(file.gcount()));
+    }
+    if (file.bad()) fail_unreadable(path, std::strerror(errno));
+    return text;
 }
 
 TextReader::TextReader(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
@@ -75,31 +109,7 @@ TextReader::TextReader(std::string name, std::string text) : name_(std::move(nam
 }
 
 TextReader TextReader::from_file(const std::filesystem::path& path) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found) {
-        fail_unreadable(path, "there is no such file; check the path");
-    }
-    if (error) fail_unreadable(path, error.message());
-    if (status.type() == std::filesystem::file_type::directory) {
-        fail_unreadable(path, "it is a folder; name a file in it");
-    }
-
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) fail_unreadable(path, fmt::format("{}; check its permissions", std::strerror(errno)));
-    std::string text;
-    // Not by the file's size: a pipe has none.
-    constexpr std::size_t chunk = std::size_t{1} << 20;
-    while (file) {
-        const std::size_t old_size = text.size();
-        if (old_size > largest_file) fail_unreadable(path, "it is larger than 1 GiB; split the scene");
-        text.resize(old_size + chunk);
-        file.read(text.data() + old_size, static_cast<std::streamsize>(chunk));
-        text.resize(old_size + static_cast<std::size_t>(file.gcount()));
-    }
-    if (file.bad()) fail_unreadable(path, std::strerror(errno));
-    return TextReader(path.string(), std::move(text));
+    return TextReader(path.string(), read_scene_file(path));
 }
 
 // Finds the next word.

@@ -86,6 +86,9 @@ private:
     int last_column_ = 1;
 };
 
+/// The bytes of a file, at most 1 GiB. Throws Error(scene) with the path if it cannot be read.
+std::string read_scene_file(const std::filesystem::path& path);
+
 /// A word for a message: in quotes, shortened, without control characters.
 std::string in_quotes(std::string_view word);
 

@@ -1,6 +1,7 @@
 // What no scene may hold, whatever its format: the loaders call these at the place of the value.
 #pragma once
 
+#include <limits>
 #include <string_view>
 
 #include <glm/mat4x4.hpp>
@@ -53,5 +54,29 @@ bool is_invertible(const glm::dmat4& m);
 /// inverted and leaves an ellipsoid inside ±max_magnitude.
 void check_sphere_transform(const glm::dmat4& m, glm::dvec3 center, double radius,
                             const SourceLocation& where);
+
+/// Throws SceneError unless `m` is affine, can be inverted and has no element beyond ±max_magnitude.
+void check_transform(const glm::dmat4& m, const SourceLocation& where);
+
+/// An axis-aligned box; empty while lo > hi.
+struct Extent {
+    glm::dvec3 lo{std::numeric_limits<double>::infinity()};
+    glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
+
+    bool empty() const { return lo.x > hi.x; }
+    void add(glm::dvec3 point);
+    void add(const Extent& other);
+    /// Around the transformed box.
+    Extent transformed(const glm::dmat4& m) const;
+    bool within(double magnitude) const;
+};
+
+/// A box around a primitive, in its object space.
+Extent extent_of(const Scene& scene, const Primitive& primitive);
+
+/// Throws SceneError unless `m`, whose inverse exists, leaves the primitive (its own transform does
+/// not count) inside ±max_magnitude, and a solid no smaller than min_length.
+void check_placed(const Scene& scene, const Primitive& primitive, const glm::dmat4& m,
+                  const SourceLocation& where);
 
 }  // namespace sahl

@@ -146,9 +146,9 @@ TEST_CASE("Files that cannot be read", "[scene]") {
     } else {
         check(locked, ExitCode::scene, "check its permissions");
     }
-    check(folder.write("scene.obj", ""), ExitCode::usage, "extension '.obj'; formats are .nff");
+    check(folder.write("scene.obj", ""), ExitCode::usage, "extension '.obj'; formats are .json");
     check(folder.write("scene", ""), ExitCode::usage,
-          "formats are .nff (Neutral File Format) and .test (CSE 167)");
+          "formats are .json (Sahl scene), .nff (Neutral File Format) and .test (CSE 167)");
 }
 
 TEST_CASE("A binary file is refused at its first strange byte", "[scene]") {
