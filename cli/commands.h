@@ -17,6 +17,7 @@ struct Command {
 Command add_render_command(CLI::App& app, CommonOptions& common);
 Command add_compare_command(CLI::App& app, CommonOptions& common);
 Command add_convert_command(CLI::App& app, CommonOptions& common);
+Command add_info_command(CLI::App& app, CommonOptions& common);
 Command add_devices_command(CLI::App& app, CommonOptions& common);
 
 }  // namespace sahl::cli

@@ -117,6 +117,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
         "Examples:\n"
         "  sahl render scene.nff -o image.png\n"
         "  sahl compare image.png reference.png --threshold 2/255\n"
+        "  sahl info scene.json\n"
         "  sahl devices\n"
         "Each command has its own --help.");
     bool version = false;
@@ -124,7 +125,8 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     add_device_options(app, common);
     add_common_options(app, common);
     const std::vector<Command> commands{add_render_command(app, common), add_compare_command(app, common),
-                                        add_convert_command(app, common), add_devices_command(app, common)};
+                                        add_info_command(app, common), add_convert_command(app, common),
+                                        add_devices_command(app, common)};
     try {
         parse(app, argc, argv);
     } catch (const CLI::CallForHelp&) {

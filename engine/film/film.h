@@ -19,6 +19,11 @@ struct Image {
     std::vector<float> pixels;
 };
 
+/// What a Film of this size takes.
+constexpr std::size_t film_bytes(int width, int height) {
+    return 3 * sizeof(std::int64_t) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
 /// Sums are taken modulo 2^64 and are right whenever the true sum lies within ±2^31, whatever came in
 /// between: for every pixel whose resolved value is below 131072 at 16384 samples. One thread at a time.
 class Film {

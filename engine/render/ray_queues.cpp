@@ -18,30 +18,59 @@ std::uint32_t array_length(std::uint32_t rays) {
     return length % page == 0 ? length - line : length;
 }
 
+/// Bytes of each buffer.
+struct Sizes {
+    Sizes(std::uint32_t capacity, std::uint32_t light_count)
+        : array(capacity * word),
+          blocks((capacity + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK),
+          shadow_light(3 * light_count * array) {}
+
+    std::size_t array;   ///< of a word a ray
+    std::size_t blocks;  ///< of compaction, a number
+    std::size_t rays = SAHL_RAY_FLOATS * array;
+    std::size_t ids = SAHL_RAY_UINTS * array;
+    std::size_t hits = SAHL_HIT_FLOATS * array;
+    std::size_t hit_ids = SAHL_HIT_UINTS * array;
+    std::size_t shadow_surfaces = SAHL_SURFACE_FLOATS * array;
+    std::size_t shadow_light;
+    std::size_t outcomes = array;
+    std::size_t block_counts = 2 * blocks * word;
+    std::size_t block_shadow_rays = blocks * word;
+    std::size_t totals = 3 * word;
+    std::size_t light = 3 * array;
+    std::size_t pixels = array;
+};
+
 }  // namespace
+
+std::size_t ray_queue_bytes(std::uint32_t ray_capacity, int depth, std::uint32_t light_count) {
+    const Sizes size(array_length(ray_capacity), light_count);
+    const auto batches = static_cast<std::size_t>(depth) + 1;
+    return (batches + 2) * (size.rays + size.ids) + size.hits + size.hit_ids + size.shadow_surfaces +
+           size.shadow_light + size.outcomes + size.block_counts + size.block_shadow_rays + size.totals +
+           2 * (size.light + size.pixels);
+}
 
 RayQueues::RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count)
     : capacity(array_length(ray_capacity)) {
-    const std::size_t array = capacity * word;
-    const std::size_t blocks = (capacity + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
+    const Sizes size(capacity, light_count);
     for (int i = 0; i <= depth; ++i) {
         const std::string name = "ray batch " + std::to_string(i);
-        batches.push_back({Buffer(device, SAHL_RAY_FLOATS * array, name),
-                           Buffer(device, SAHL_RAY_UINTS * array, name + " ids")});
+        batches.push_back({Buffer(device, size.rays, name), Buffer(device, size.ids, name + " ids")});
     }
-    hits = Buffer(device, SAHL_HIT_FLOATS * array, "hits");
-    hit_ids = Buffer(device, SAHL_HIT_UINTS * array, "hit ids");
-    shadow_surfaces = Buffer(device, SAHL_SURFACE_FLOATS * array, "shadow surfaces");
-    shadow_light = Buffer(device, 3 * light_count * array, "shadow light");
-    children = Buffer(device, 2 * SAHL_RAY_FLOATS * array, "children");
-    child_ids = Buffer(device, 2 * SAHL_RAY_UINTS * array, "child ids");
-    outcomes = Buffer(device, array, "outcomes");
-    block_counts = Buffer(device, 2 * blocks * word, "block counts");
-    block_shadow_rays = Buffer(device, blocks * word, "block shadow rays");
-    totals = Buffer(device, 3 * word, "totals");
+    hits = Buffer(device, size.hits, "hits");
+    hit_ids = Buffer(device, size.hit_ids, "hit ids");
+    shadow_surfaces = Buffer(device, size.shadow_surfaces, "shadow surfaces");
+    shadow_light = Buffer(device, size.shadow_light, "shadow light");
+    children = Buffer(device, 2 * size.rays, "children");
+    child_ids = Buffer(device, 2 * size.ids, "child ids");
+    outcomes = Buffer(device, size.outcomes, "outcomes");
+    block_counts = Buffer(device, size.block_counts, "block counts");
+    block_shadow_rays = Buffer(device, size.block_shadow_rays, "block shadow rays");
+    totals = Buffer(device, size.totals, "totals");
     for (Contributions& c : contributions) {
-        c.light = Buffer(device, 3 * array, "contributions");
-        c.pixels = Buffer(device, array, "contribution pixels");
+        c.light = Buffer(device, size.light, "contributions");
+        c.pixels = Buffer(device, size.pixels, "contribution pixels");
     }
 }
 

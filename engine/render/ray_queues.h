@@ -1,6 +1,7 @@
 // The device memory of a wave: ray batches, and what one generation leaves for the next kernel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct Contributions {
     Buffer light;
     Buffer pixels;
 };
+
+/// What RayQueues of these arguments allocate, without what the device rounds up.
+std::size_t ray_queue_bytes(std::uint32_t ray_capacity, int depth, std::uint32_t light_count);
 
 struct RayQueues {
     /// All buffers for batches of about `ray_capacity` rays: whole cache lines, and no multiple of

@@ -1,0 +1,202 @@
+// `sahl info`: what is in a scene. Needs no OpenCL device.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/standard_output.h"
+#include "engine/render/scene_info.h"
+
+namespace sahl::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 6> primitive_names{"triangles", "polygons", "spheres",
+                                                     "cones",     "discs",    "boxes"};
+constexpr std::array<const char*, 3> light_names{"point", "directional", "spot"};
+
+struct InfoOptions {
+    std::string scene;
+    LoadOptions loading;
+};
+
+const char* format_of(const std::filesystem::path& scene) {
+    std::string extension = scene.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".nff" ? "Neutral File Format" : extension == ".test" ? "CSE 167" : "Sahl scene";
+}
+
+/// "12 B", "3.40 MiB".
+std::string human_size(std::uint64_t bytes) {
+    constexpr std::array units{"KiB", "MiB", "GiB", "TiB"};
+    if (bytes < 1024) return fmt::format("{} B", bytes);
+    double value = static_cast<double>(bytes) / 1024;
+    std::size_t unit = 0;
+    for (; value >= 1024 && unit + 1 < units.size(); ++unit) value /= 1024;
+    return fmt::format("{:.2f} {}", value, units[unit]);
+}
+
+template <std::size_t N>
+std::uint64_t sum(const std::array<std::uint64_t, N>& counts) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : counts) all += count;
+    return all;
+}
+
+/// "5: 3 spheres, 2 boxes".
+template <std::size_t N>
+std::string counts_text(const std::array<std::uint64_t, N>& counts, const std::array<const char*, N>& names) {
+    std::string parts;
+    for (std::size_t i = 0; i < N; ++i) {
+        if (counts[i] > 0) parts += fmt::format("{} {} {}", parts.empty() ? ":" : ",", counts[i], names[i]);
+    }
+    return fmt::format("{}{}", sum(counts), parts);
+}
+
+std::vector<std::pair<const char*, std::uint64_t>> memory_parts(const MemoryPlan& memory) {
+    return {{"bvh_nodes", memory.nodes},     {"leaf_blocks", memory.leaf_blocks},
+            {"shapes", memory.shapes},       {"instances", memory.instances},
+            {"materials", memory.materials}, {"ray_queues", memory.ray_queues},
+            {"film", memory.film},           {"total", memory.total()}};
+}
+
+std::vector<std::string> camera_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+    return names;
+}
+
+std::string unused_text(const SceneInfo& info) {
+    std::vector<std::string> parts;
+    for (const std::string& name : info.unused_materials) parts.push_back("material '" + name + "'");
+    for (const std::string& name : info.unused_groups) parts.push_back("group '" + name + "'");
+    return parts.empty() ? "nothing" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string info_text(const InfoOptions& options, const Scene& scene, const SceneInfo& info) {
+    std::string text;
+    const auto line = [&text](std::string_view name, const std::string& value) {
+        text += fmt::format("{:<16}{}\n", name, value);
+    };
+    line("scene", fmt::format("{} ({})", options.scene, format_of(options.scene)));
+    line("image",
+         fmt::format("{}x{}, depth {}", scene.resolution.width, scene.resolution.height, scene.depth));
+    line("primitives", counts_text(info.primitives, primitive_names));
+    line("instances", fmt::format("{} of {} groups; placed {}, {} primitives in all", info.instances,
+                                  scene.groups.size(), info.placed_instances, info.placed_primitives));
+    line("lights", fmt::format("{}; ambient {:g} {:g} {:g}", counts_text(info.lights, light_names),
+                               scene.ambient.x, scene.ambient.y, scene.ambient.z));
+    line("cameras", fmt::format("{}: {}", scene.cameras.size(), fmt::join(camera_names(scene), ", ")));
+    line("materials", fmt::format("{}, textures {}", scene.materials.size(), scene.textures.size()));
+    const auto& [lo, hi] = info.bounds;
+    line("bounds", fmt::format("{:g} {:g} {:g} to {:g} {:g} {:g}", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]));
+    line("BVH", fmt::format("{} nodes, {} leaves; trees: {}", info.nodes, info.leaves, info.trees));
+    line("  the world's",
+         fmt::format("{} nodes, {} leaves, {} levels, {:.2f} of 4 primitives a leaf, SAH cost "
+                     "{:.2f}, built in {:.2f} s",
+                     info.bvh.nodes, info.bvh.leaves, info.bvh.depth, info.bvh.leaf_fill, info.bvh.sah_cost,
+                     info.bvh.build_seconds));
+    line("memory", "a render with the scene's size and depth needs");
+    for (const auto& [name, bytes] : memory_parts(info.memory)) {
+        std::string label = fmt::format("  {}", name);
+        std::replace(label.begin(), label.end(), '_', ' ');
+        line(label, fmt::format("{:>12}", human_size(bytes)));
+    }
+    line("unused", unused_text(info));
+    return text;
+}
+
+template <std::size_t N>
+Json counts_object(const std::array<std::uint64_t, N>& counts, const std::array<const char*, N>& names) {
+    Json object{{"count", sum(counts)}};
+    for (std::size_t i = 0; i < N; ++i) object[names[i]] = counts[i];
+    return object;
+}
+
+template <class Vector>
+Json vector_array(const Vector& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Json info_event(const InfoOptions& options, const Scene& scene, const SceneInfo& info) {
+    Json cameras = Json::array();
+    for (const Camera& camera : scene.cameras) {
+        cameras.push_back({{"name", camera.name},
+                           {"eye", vector_array(camera.eye)},
+                           {"look_at", vector_array(camera.look_at)},
+                           {"up", vector_array(camera.up)},
+                           {"fov", camera.fov_y}});
+    }
+    Json memory = Json::object();
+    for (const auto& [name, bytes] : memory_parts(info.memory)) memory[name] = bytes;
+    Json lights = counts_object(info.lights, light_names);
+    lights["ambient"] = vector_array(scene.ambient);
+    Json primitives = counts_object(info.primitives, primitive_names);
+    primitives["placed"] = info.placed_primitives;
+    return {{"event", "scene"},
+            {"scene", options.scene},
+            {"format", format_of(options.scene)},
+            {"width", scene.resolution.width},
+            {"height", scene.resolution.height},
+            {"depth", scene.depth},
+            {"primitives", primitives},
+            {"instances", {{"count", info.instances}, {"placed", info.placed_instances}}},
+            {"groups", scene.groups.size()},
+            {"lights", lights},
+            {"cameras", cameras},
+            {"materials", scene.materials.size()},
+            {"textures", scene.textures.size()},
+            {"bounds", {vector_array(info.bounds.lo), vector_array(info.bounds.hi)}},
+            {"bvh",
+             {{"trees", info.trees},
+              {"nodes", info.nodes},
+              {"leaves", info.leaves},
+              {"world",
+               {{"primitives", info.bvh.primitives},
+                {"nodes", info.bvh.nodes},
+                {"leaves", info.bvh.leaves},
+                {"depth", info.bvh.depth},
+                {"leaf_fill", info.bvh.leaf_fill},
+                {"sah_cost", info.bvh.sah_cost},
+                {"build_seconds", info.bvh.build_seconds}}}}},
+            {"memory", memory},
+            {"unused", {{"materials", info.unused_materials}, {"groups", info.unused_groups}}}};
+}
+
+ExitCode describe(const InfoOptions& options, const CommonOptions& common) {
+    const Scene scene = load_scene(options.scene, options.loading);
+    const SceneInfo info = describe_scene(scene);
+    if (common.json) {
+        print_event(info_event(options, scene, info));
+    } else {
+        print(info_text(options, scene, info));
+    }
+    return ExitCode::ok;
+}
+
+}  // namespace
+
+Command add_info_command(CLI::App& app, CommonOptions& common) {
+    const auto options = std::make_shared<InfoOptions>();
+    CLI::App* command = app.add_subcommand("info", "says what is in a scene");
+    command->add_option("SCENE", options->scene, "scene file: .json, .nff or .test")
+        ->required()
+        ->type_name("FILE");
+    add_scene_options(*command, options->loading);
+    add_common_options(*command, common);
+    command->footer(
+        "An unused material is one that no primitive has, an unused group one that no instance leads to.\n"
+        "The memory of the OpenCL driver comes on top of the plan.\n"
+        "Examples:\n"
+        "  sahl info scene.json\n"
+        "  sahl info scene.json --set count=100 --json");
+    return {command, [options, &common] { return describe(*options, common); }};
+}
+
+}  // namespace sahl::cli
