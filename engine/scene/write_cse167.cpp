@@ -135,7 +135,6 @@ std::string Cse167Writer::write() {
             line("sphere {} {}", decimals(sphere.center), decimal(sphere.radius));
         } else {
             const Triangle& triangle = scene_.triangles[p.index];
-            if (triangle.has_uv) fail(fmt::format("has no texture coordinates (object {})", id));
             write_corners(id);
             write_triangle(triangle);
         }

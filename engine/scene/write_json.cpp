@@ -13,6 +13,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/json_layout.h"
+#include "engine/scene/validate.h"
 #include "engine/scene/write_text.h"
 
 namespace sahl {
@@ -153,12 +154,12 @@ JsonLayout JsonWriter::lights() const {
         one.add("type", json_string(directional ? "directional" : spot ? "spot" : "point"));
         if (directional) {
             // The way the light goes; a scene holds the way to it.
-            one.add("direction", vector(-light.position));
+            one.add("direction", vector(glm::dvec3(0) - light.position));
         } else {
             one.add("position", vector(light.position));
         }
         if (spot) {
-            one.add("direction", vector(light.direction));
+            one.add("direction", vector(before_normalizing(light.direction)));
             one.add("inner_angle", number(light.inner_angle));
             one.add("outer_angle", number(light.outer_angle));
         }
@@ -308,7 +309,7 @@ JsonLayout JsonWriter::object(const Primitive& p) const {
             const Disc& disc = scene_.discs[p.index];
             object.add("type", std::string("\"disc\""));
             object.add("center", vector(disc.center));
-            object.add("normal", vector(disc.normal));
+            object.add("normal", vector(before_normalizing(disc.normal)));
             object.add("radius", number(disc.radius));
             break;
         }
@@ -343,6 +344,9 @@ std::uint32_t JsonWriter::run_of_triangles(std::uint32_t first, std::uint32_t en
 
 JsonLayout JsonWriter::mesh(std::uint32_t first, std::uint32_t end) const {
     const Triangle& model = scene_.triangles[scene_.primitives[first].index];
+    // A transform without an inverse, which a Sahl scene may not have: the renderer only needs the places.
+    const glm::dmat4& m = scene_.transforms[scene_.primitives[first].transform];
+    const bool bakes = !is_invertible(m);
     JsonLayout vertices = JsonLayout::array(Lines::full);
     JsonLayout normals = JsonLayout::array(Lines::full);
     JsonLayout uvs = JsonLayout::array(Lines::full);
@@ -352,7 +356,8 @@ JsonLayout JsonWriter::mesh(std::uint32_t first, std::uint32_t end) const {
         const Triangle& triangle = scene_.triangles[scene_.primitives[i].index];
         std::size_t corners[3] = {};
         for (int k = 0; k < 3; ++k) {
-            const glm::vec3 position = scene_.vertices[triangle.vertices[k]];
+            glm::vec3 position = scene_.vertices[triangle.vertices[k]];
+            if (bakes) position = glm::vec3(m * glm::dvec4(position, 1));
             const glm::vec3 normal = model.smooth ? scene_.normals[triangle.normals[k]] : glm::vec3(0);
             const glm::vec2 uv = model.has_uv ? scene_.uvs[triangle.uvs[k]] : glm::vec2(0);
             const std::array<float, 8> values = {position.x, position.y, position.z, normal.x,
@@ -378,7 +383,7 @@ JsonLayout JsonWriter::mesh(std::uint32_t first, std::uint32_t end) const {
 
 void JsonWriter::add_transform(JsonLayout& object, std::uint32_t transform) const {
     const glm::dmat4& m = scene_.transforms[transform];
-    if (m == glm::dmat4(1)) return;
+    if (m == glm::dmat4(1) || !is_invertible(m)) return;
     JsonLayout rows = JsonLayout::array();
     for (int row = 0; row < 4; ++row)
         rows.add("", vector(glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row])));

@@ -127,7 +127,6 @@ void NffWriter::write_object(std::size_t id) {
     use_material(p.material);
     switch (p.kind) {
         case PrimitiveKind::triangle:
-            if (scene_.triangles[p.index].has_uv) fail(fmt::format("has no texture coordinates {}", object));
             return write_triangle(scene_.triangles[p.index]);
         case PrimitiveKind::polygon: {
             const Polygon& polygon = scene_.polygons[p.index];

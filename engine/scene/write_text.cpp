@@ -57,6 +57,19 @@ glm::dvec3 before_normalizing(glm::vec3 normal, std::string_view format) {
     return on_sphere;
 }
 
+glm::dvec3 before_normalizing(glm::dvec3 unit) {
+    // Rounding differs with the length; one of a few lengths gives all three components.
+    constexpr int lengths = 4096;
+    for (int i = 0; i < lengths; ++i) {
+        const glm::dvec3 v = unit * (1 + i * 0.001);
+        if (glm::normalize(v) == unit) return v;
+    }
+    throw Error(ExitCode::scene,
+                fmt::format("the direction {} has the length {:g}, and scene files only hold "
+                            "directions of length 1; normalise it",
+                            decimals(unit), glm::length(unit)));
+}
+
 void cannot_express(std::string_view format, std::string_view lacks) {
     throw Error(ExitCode::scene, fmt::format("{} {}; write .json, which has everything", format, lacks));
 }

@@ -22,6 +22,10 @@ std::string decimals(glm::dvec3 v, std::string_view separator = " ");
 /// `format` if there is none, because `normal` is no unit vector.
 glm::dvec3 before_normalizing(glm::vec3 normal, std::string_view format);
 
+/// A vector that is the direction `unit` again, bit for bit, after a loader has normalised it. Throws
+/// Error(scene) if there is none, because `unit` is no unit vector.
+glm::dvec3 before_normalizing(glm::dvec3 unit);
+
 /// Throws Error(scene) "`format` `lacks`; write .json, which has everything".
 [[noreturn]] void cannot_express(std::string_view format, std::string_view lacks);
 
