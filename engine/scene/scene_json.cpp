@@ -91,11 +91,12 @@ FileScene read_json_scene(const JsonDocument& document, const fs::path& path, Sc
                           const std::function<void(std::vector<Parameter>&)>& set) {
     const JsonReader plain(document, nullptr);
     const JsonObject file(plain, document.root(), "scene", {"sahl"},
-                          {"description", "parameters", "film", "depth", "background", "cameras", "lights",
-                           "materials", "groups", "objects"});
+                          {"$schema", "description", "parameters", "film", "depth", "background", "cameras",
+                           "lights", "materials", "groups", "objects"});
     check_version(plain, file);
-    if (const JsonValue* text = file.find("description"); text != nullptr && text->kind != JsonKind::text) {
-        plain.fail_type(*text, "description", "a string");
+    for (const std::string_view key : {"$schema", "description"}) {
+        const JsonValue* text = file.find(key);
+        if (text != nullptr && text->kind != JsonKind::text) plain.fail_type(*text, key, "a string");
     }
     std::vector<Parameter> parameters;
     if (const JsonValue* value = file.find("parameters")) parameters = read_parameters(document, *value);
