@@ -11,6 +11,8 @@
 namespace sahl {
 namespace {
 
+constexpr std::string_view word_ends = " \t\r\n,:[]{}\"/";
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // Bytes of the UTF-8 character at `position`, 0 if there is none (RFC 3629).
@@ -56,8 +58,7 @@ std::size_t skip_blank(std::string_view text, std::size_t position) {
 
 // The run of characters that were meant as one word.
 std::string_view word_at(std::string_view text, std::size_t position) {
-    constexpr std::string_view ends = " \t\r\n,:[]{}\"/";
-    const std::size_t end = std::min(text.find_first_of(ends, position), text.size());
+    const std::size_t end = std::min(text.find_first_of(word_ends, position), text.size());
     return text.substr(position, std::max<std::size_t>(end - position, 1));
 }
 
@@ -130,6 +131,10 @@ JsonSyntaxError explain_string(std::string_view text, std::size_t start) {
     return {start, "this string does not end on its line; close it with \""};
 }
 
+JsonSyntaxError no_number(std::size_t position, std::string_view word) {
+    return {position, fmt::format("{} is no number; numbers look like 0.5, -2 or 1e-3", in_quotes(word))};
+}
+
 JsonSyntaxError explain_value(std::string_view text, std::size_t position, std::string_view expected) {
     const char c = position < text.size() ? text[position] : '\0';
     if (c == '"') return explain_string(text, position);
@@ -139,7 +144,7 @@ JsonSyntaxError explain_value(std::string_view text, std::size_t position, std::
         if (is_json_number(word)) {
             return {position, fmt::format("{} is outside the range of numbers", in_quotes(word))};
         }
-        return {position, fmt::format("{} is no number; numbers look like 0.5, -2 or 1e-3", in_quotes(word))};
+        return no_number(position, word);
     }
     constexpr std::array<std::string_view, 3> literals = {"true", "false", "null"};
     return {position, fmt::format("expected {}; {}{}", expected, found(text, position),
@@ -194,6 +199,12 @@ JsonSyntaxError explain_json_error(std::string_view text, std::size_t position, 
         if (here() != ':') return {at, "expected ':' behind the key; " + found(text, at)};
         at = skip_blank(text, at + 1);
     } else if (after == JsonAfter::value && inside != JsonInside::file) {
+        // A number such as 01 was taken for 0 with something behind it.
+        const std::size_t start = text.find_last_of(word_ends, position - 1) + 1;
+        const std::string_view last = word_at(text, start);
+        if (start < position && (is_digit(last[0]) || last[0] == '-') && !is_json_number(last)) {
+            return no_number(start, last);
+        }
         const char close = inside == JsonInside::array ? ']' : '}';
         if (here() != ',') return {at, fmt::format("expected ',' or '{}'; {}", close, found(text, at))};
         at = skip_blank(text, at + 1);

@@ -7,6 +7,7 @@
 
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_cse167.h"
+#include "engine/scene/scene_json.h"
 #include "engine/scene/scene_nff.h"
 
 namespace sahl::tests {
@@ -19,6 +20,16 @@ inline Scene parse_nff(const std::string& text) {
 inline Scene parse_cse167(const std::string& text) {
     TextReader reader("scene.test", text);
     return read_cse167(reader);
+}
+
+/// What is in front of the objects of parse_json: one line.
+inline const std::string json_head =
+    R"({"sahl": 1, "cameras": {"main": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}}, "objects": [)"
+    "\n";
+
+/// A Sahl scene of these objects, which begin on line 2.
+inline Scene parse_json(const std::string& objects, const LoadOptions& options = {}) {
+    return read_scene_json("scene.json", json_head + objects + "]}", options);
 }
 
 /// A file of tests/data.
