@@ -16,9 +16,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 6> primitive_names{"triangles", "polygons", "spheres",
-                                                     "cones",     "discs",    "boxes"};
-constexpr std::array<const char*, 3> light_names{"point", "directional", "spot"};
+struct Name {
+    const char* one;
+    const char* many;
+};
+constexpr std::array<Name, 6> primitive_names{{{"triangle", "triangles"},
+                                               {"polygon", "polygons"},
+                                               {"sphere", "spheres"},
+                                               {"cone", "cones"},
+                                               {"disc", "discs"},
+                                               {"box", "boxes"}}};
+constexpr std::array<Name, 3> light_names{
+    {{"point", "point"}, {"directional", "directional"}, {"spot", "spot"}}};
 
 struct InfoOptions {
     std::string scene;
@@ -51,10 +60,12 @@ std::uint64_t sum(const std::array<std::uint64_t, N>& counts) {
 
 /// "5: 3 spheres, 2 boxes".
 template <std::size_t N>
-std::string counts_text(const std::array<std::uint64_t, N>& counts, const std::array<const char*, N>& names) {
+std::string counts_text(const std::array<std::uint64_t, N>& counts, const std::array<Name, N>& names) {
     std::string parts;
     for (std::size_t i = 0; i < N; ++i) {
-        if (counts[i] > 0) parts += fmt::format("{} {} {}", parts.empty() ? ":" : ",", counts[i], names[i]);
+        if (counts[i] > 0)
+            parts += fmt::format("{} {} {}", parts.empty() ? ":" : ",", counts[i],
+                                 counts[i] == 1 ? names[i].one : names[i].many);
     }
     return fmt::format("{}{}", sum(counts), parts);
 }
@@ -98,7 +109,7 @@ std::string info_text(const InfoOptions& options, const Scene& scene, const Scen
     line("bounds", fmt::format("{:g} {:g} {:g} to {:g} {:g} {:g}", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]));
     line("BVH", fmt::format("{} nodes, {} leaves; trees: {}", info.nodes, info.leaves, info.trees));
     line("  the world's",
-         fmt::format("{} nodes, {} leaves, {} levels, {:.2f} of 4 primitives a leaf, SAH cost "
+         fmt::format("{} nodes, {} leaves, depth {}, {:.2f} of 4 primitives a leaf, SAH cost "
                      "{:.2f}, built in {:.2f} s",
                      info.bvh.nodes, info.bvh.leaves, info.bvh.depth, info.bvh.leaf_fill, info.bvh.sah_cost,
                      info.bvh.build_seconds));
@@ -113,9 +124,9 @@ std::string info_text(const InfoOptions& options, const Scene& scene, const Scen
 }
 
 template <std::size_t N>
-Json counts_object(const std::array<std::uint64_t, N>& counts, const std::array<const char*, N>& names) {
+Json counts_object(const std::array<std::uint64_t, N>& counts, const std::array<Name, N>& names) {
     Json object{{"count", sum(counts)}};
-    for (std::size_t i = 0; i < N; ++i) object[names[i]] = counts[i];
+    for (std::size_t i = 0; i < N; ++i) object[names[i].many] = counts[i];
     return object;
 }
 

@@ -19,5 +19,7 @@ Command add_compare_command(CLI::App& app, CommonOptions& common);
 Command add_convert_command(CLI::App& app, CommonOptions& common);
 Command add_info_command(CLI::App& app, CommonOptions& common);
 Command add_devices_command(CLI::App& app, CommonOptions& common);
+Command add_completion_command(CLI::App& app, CommonOptions& common);
+Command add_man_command(CLI::App& app, CommonOptions& common);
 
 }  // namespace sahl::cli

@@ -124,9 +124,10 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     app.add_flag("--version", version, "versions of Sahl, the OpenCL device and its driver");
     add_device_options(app, common);
     add_common_options(app, common);
-    const std::vector<Command> commands{add_render_command(app, common), add_compare_command(app, common),
-                                        add_info_command(app, common), add_convert_command(app, common),
-                                        add_devices_command(app, common)};
+    const std::vector<Command> commands{add_render_command(app, common),  add_compare_command(app, common),
+                                        add_info_command(app, common),    add_convert_command(app, common),
+                                        add_devices_command(app, common), add_completion_command(app, common),
+                                        add_man_command(app, common)};
     try {
         parse(app, argc, argv);
     } catch (const CLI::CallForHelp&) {

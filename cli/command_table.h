@@ -1,0 +1,22 @@
+// The commands and options that --help shows, for what else is made of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+
+namespace sahl::cli {
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
+
+/// "-o", "--output".
+std::vector<std::string> names_of(const CLI::Option& option);
+
+bool takes_value(const CLI::Option& option);
+bool is_repeatable(const CLI::Option& option);
+
+std::vector<const CLI::Option*> named_options(const CLI::App& app);
+std::vector<const CLI::Option*> positionals(const CLI::App& app);
+
+}  // namespace sahl::cli

@@ -1,0 +1,226 @@
+#include "cli/completion.h"
+
+#include "cli/command_table.h"
+
+namespace sahl::cli {
+
+namespace {
+
+/// The bash command that completes a value; empty where nothing is known of it.
+std::string bash_action(const CLI::Option& option) {
+    const OptionWords& words = words_of(option);
+    if (!words.words.empty()) {
+        return fmt::format("{} \"$current\" {}", words.list ? "_sahl_list" : "_sahl_words",
+                           fmt::join(words.words, " "));
+    }
+    if (option.get_type_name() == "FILE") return "_sahl_files \"$current\"";
+    if (option.get_type_name() == "DIR") return "_sahl_files \"$current\" -d";
+    return "";
+}
+
+/// The cases `command:option` of values.
+std::string bash_values(const CLI::App& command, const std::string& name) {
+    std::string text;
+    for (const CLI::Option* option : named_options(command)) {
+        if (!takes_value(*option)) continue;
+        std::string patterns;
+        for (const std::string& spelling : names_of(*option)) {
+            patterns += fmt::format("{}{}:{}", patterns.empty() ? "" : " | ", name, spelling);
+        }
+        const std::string action = bash_action(*option);
+        text += fmt::format("        {}) {}return ;;\n", patterns, action.empty() ? "" : action + "; ");
+    }
+    return text;
+}
+
+std::string option_names(const CLI::App& command) {
+    std::vector<std::string> all;
+    for (const CLI::Option* option : named_options(command)) {
+        for (std::string& name : names_of(*option)) all.push_back(std::move(name));
+    }
+    return fmt::format("{}", fmt::join(all, " "));
+}
+
+std::string command_names(const CLI::App& app, const char* separator) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+    return fmt::format("{}", fmt::join(names, separator));
+}
+
+/// Options before the command whose next word is a value.
+std::string value_options(const CLI::App& app) {
+    std::vector<std::string> all;
+    for (const CLI::Option* option : named_options(app)) {
+        if (!takes_value(*option)) continue;
+        for (std::string& name : names_of(*option)) all.push_back(std::move(name));
+    }
+    return fmt::format("{}", fmt::join(all, " | "));
+}
+
+constexpr const char* bash_helpers = R"(_sahl_words() {
+    mapfile -t COMPREPLY < <(compgen -W "${*:2}" -- "$1")
+}
+
+# The last of words that commas separate.
+_sahl_list() {
+    local before=
+    [[ $1 == *,* ]] && before=${1%,*},
+    compopt -o nospace 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -P "$before" -W "${*:2}" -- "${1##*,}")
+}
+
+_sahl_files() {
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen "${2:--f}" -- "$1")
+}
+)";
+
+constexpr const char* bash_start = R"(
+_sahl() {
+    local current=${COMP_WORDS[COMP_CWORD]} previous= command= i
+    COMPREPLY=()
+    ((COMP_CWORD > 0)) && previous=${COMP_WORDS[COMP_CWORD - 1]}
+    # '--option=value' comes as three words.
+    if [[ $current == = ]]; then
+        current=
+    elif [[ $previous == = && COMP_CWORD -ge 2 ]]; then
+        previous=${COMP_WORDS[COMP_CWORD - 2]}
+    fi
+)";
+
+std::string quoted_for_zsh(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '\'') {
+            result += "'\\''";
+        } else {
+            if (c == '[' || c == ']' || c == ':' || c == '\\') result += '\\';
+            result += c;
+        }
+    }
+    return result;
+}
+
+/// ":NAME:what completes it".
+std::string zsh_value(const CLI::Option& option, const std::string& name) {
+    const OptionWords& words = words_of(option);
+    std::string action;
+    if (words.list) {
+        action = fmt::format("_values -s , {} {}", name, fmt::join(words.words, " "));
+    } else if (!words.words.empty()) {
+        action = fmt::format("({})", fmt::join(words.words, " "));
+    } else if (option.get_type_name() == "FILE") {
+        action = "_files";
+    } else if (option.get_type_name() == "DIR") {
+        action = "_files -/";
+    }
+    return fmt::format(":{}:{}", quoted_for_zsh(name), action);
+}
+
+std::string zsh_option(const CLI::Option& option) {
+    const std::vector<std::string> names = names_of(option);
+    const bool value = takes_value(option);
+    std::string spellings;
+    for (const std::string& name : names) {
+        spellings += (spellings.empty() ? "" : ",") + name;
+        if (value) spellings += name.starts_with("--") ? "=" : "+";
+    }
+    const std::string help = fmt::format("[{}]", quoted_for_zsh(option.get_description()));
+    const std::string argument = value ? zsh_value(option, option.get_type_name()) : "";
+    const std::string exclusive = is_repeatable(option) ? "*" : fmt::format("({})", fmt::join(names, " "));
+    if (names.size() == 1) return fmt::format("'{}{}{}{}'", exclusive, spellings, help, argument);
+    return fmt::format("'{}'{{{}}}'{}{}'", exclusive, spellings, help, argument);
+}
+
+/// The call of _arguments for a command.
+std::string zsh_arguments(const CLI::App& command) {
+    std::string text = "                _arguments";
+    for (const CLI::Option* option : named_options(command))
+        text += " \\\n                    " + zsh_option(*option);
+    int number = 0;
+    for (const CLI::Option* option : positionals(command)) {
+        text += fmt::format(" \\\n                    '{}{}'", ++number,
+                            zsh_value(*option, option->get_single_name()));
+    }
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string bash_completion(const CLI::App& app) {
+    std::string text = "# Completes command lines of sahl in bash; printed by 'sahl completion bash'.\n\n";
+    text += bash_helpers;
+    text += bash_start;
+    text += fmt::format(
+        "    for ((i = 1; i < COMP_CWORD; ++i)); do\n"
+        "        case ${{COMP_WORDS[i]}} in\n"
+        "            {}) [[ ${{COMP_WORDS[i + 1]}} == = ]] && ((++i)); ((++i)) ;;\n"
+        "            {}) command=${{COMP_WORDS[i]}}; break ;;\n"
+        "        esac\n"
+        "    done\n"
+        "    case $command:$previous in\n",
+        value_options(app), command_names(app, " | "));
+    text += bash_values(app, "");
+    for (const CLI::App* command : commands_of(app)) text += bash_values(*command, command->get_name());
+    text += fmt::format(
+        "    esac\n"
+        "    local options words=\n"
+        "    case $command in\n"
+        "        '') options='{}' words='{}' ;;\n",
+        option_names(app), command_names(app, " "));
+    for (const CLI::App* command : commands_of(app)) {
+        text += fmt::format("        {}) options='{}' ;;\n", command->get_name(), option_names(*command));
+    }
+    text +=
+        "    esac\n"
+        "    if [[ $current == -* ]]; then\n"
+        "        _sahl_words \"$current\" \"$options\"\n"
+        "        return\n"
+        "    fi\n"
+        "    case $command in\n"
+        "        '') _sahl_words \"$current\" \"$words\" ;;\n";
+    for (const CLI::App* command : commands_of(app)) {
+        const std::vector<const CLI::Option*> arguments = positionals(*command);
+        if (arguments.empty()) continue;
+        text += fmt::format("        {}) {} ;;\n", command->get_name(), bash_action(*arguments.front()));
+    }
+    return text + "    esac\n}\n\ncomplete -F _sahl sahl\n";
+}
+
+std::string zsh_completion(const CLI::App& app) {
+    std::string text =
+        "#compdef sahl\n"
+        "# Completes command lines of sahl in zsh; printed by 'sahl completion zsh'.\n\n"
+        "_sahl() {\n"
+        "    local context state state_descr line\n"
+        "    typeset -A opt_args\n"
+        "    local -a commands=(\n";
+    for (const CLI::App* command : commands_of(app)) {
+        text +=
+            fmt::format("        '{}:{}'\n", command->get_name(), quoted_for_zsh(command->get_description()));
+    }
+    text += "    )\n    _arguments -C";
+    for (const CLI::Option* option : named_options(app)) text += " \\\n        " + zsh_option(*option);
+    text +=
+        " \\\n        '1:command:->command' '*::argument:->arguments'\n"
+        "    case $state in\n"
+        "        command) _describe command commands ;;\n"
+        "        arguments)\n"
+        "            case $words[1] in\n";
+    for (const CLI::App* command : commands_of(app)) {
+        text += fmt::format("                {})\n{}                ;;\n", command->get_name(),
+                            zsh_arguments(*command));
+    }
+    return text +
+           "            esac\n"
+           "            ;;\n"
+           "    esac\n"
+           "}\n\n"
+           "if [[ $funcstack[1] == _sahl ]]; then\n"
+           "    _sahl \"$@\"\n"
+           "else\n"
+           "    compdef _sahl sahl\n"
+           "fi\n";
+}
+
+}  // namespace sahl::cli
