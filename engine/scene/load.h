@@ -22,8 +22,9 @@ struct LoadOptions {
 /// Reads a scene: `.json` (Sahl scene), `.nff` (Haines' Neutral File Format), `.test` (CSE 167 text
 /// format).
 /// Throws SceneError with file:line:column for what is wrong inside the file, Error(scene) when it
-/// cannot be read, Error(usage) for an extension that names no format (it lists those there are) and
-/// for wrong parameters.
+/// cannot be read and, with that file's place and the include's, for what is wrong inside an included
+/// file, Error(usage) for an extension that names no format (it lists those there are), for wrong
+/// parameters and for an asset root that is no folder.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace sahl

@@ -133,6 +133,7 @@ Scene read_scene_json(const fs::path& path, std::string text, const LoadOptions&
     const auto real = [](const fs::path& p) {
         std::error_code error;
         fs::path result = fs::weakly_canonical(fs::absolute(p), error);
+        if (!result.has_filename()) result = result.parent_path();  // "folder/"
         if (error) {
             throw Error(ExitCode::scene,
                         fmt::format("cannot resolve the path {}: {}", p.string(), error.message()));

@@ -41,9 +41,12 @@ SceneFile find_scene_file(const JsonSceneState& state, const JsonValue& value, s
                                        in_quotes(uri)));
     }
     SceneFile file;
-    file.shown = (state.path.parent_path() / uri).lexically_normal();
+    const fs::path written = state.path.parent_path() / uri;
+    file.shown = written.lexically_normal();
     std::error_code error;
-    file.real = fs::weakly_canonical(state.path.parent_path() / uri, error);
+    file.real = fs::weakly_canonical(written, error);
+    // Behind a link to a folder, `..` leads elsewhere.
+    if (!error && fs::weakly_canonical(file.shown, error) != file.real) file.shown = written;
     if (error) reader.fail(value, fmt::format("cannot read {}: {}", file.shown.string(), error.message()));
     if (!lies_in(file.real, state.files.root)) {
         reader.fail(value, fmt::format("{} lies outside the asset root {}; move the file into it, or name a "

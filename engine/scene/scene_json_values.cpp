@@ -23,7 +23,7 @@ std::string describe(const JsonDocument& document, const JsonValue& value) {
         case JsonKind::boolean:
             return value.number != 0 ? "true" : "false";
         case JsonKind::number:
-            return fmt::format("the number {:.17g}", value.number);
+            return fmt::format("the number {}", value.number);
         case JsonKind::text:
             return fmt::format("the string {}", in_quotes(document.text(value)));
         case JsonKind::array:
@@ -202,8 +202,10 @@ JsonObject::JsonObject(const JsonReader& reader, const JsonValue& value, std::st
         std::vector<std::string_view> names(required);
         names.insert(names.end(), optional.begin(), optional.end());
         names.insert(names.end(), more.begin(), more.end());
+        const bool vowel = std::string_view("aeiou").find(noun[0]) != std::string_view::npos;
+        const std::string_view article = vowel ? "an" : "a";
         throw SceneError(reader.document().place(member),
-                         fmt::format("unknown key {} of a {}{}", in_quotes(member.key), noun,
+                         fmt::format("unknown key {} of {} {}{}", in_quotes(member.key), article, noun,
                                      suggest(member.key, "its keys", names)));
     }
     for (const std::string_view key : required) {

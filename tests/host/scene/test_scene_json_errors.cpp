@@ -238,7 +238,7 @@ TEST_CASE("Sahl scenes: errors of objects", "[scene][json]") {
         {R"({"type": "instance"})", "2:1", "this instance has no 'group'"},
         {R"({"type": "instance", "group": "a"})", "2:31", "there is no group 'a'; there are no groups"},
         {R"({"type": "instance", "group": "a", "material": {}})", "2:36",
-         "unknown key 'material' of a instance"},
+         "unknown key 'material' of an instance"},
     });
     check_file({{R"("groups": {"tree": []}, "objects": [{"type": "instance", "group": "tre"}])", "1:79",
                  "there is no group 'tre'; did you mean 'tree'?"}});

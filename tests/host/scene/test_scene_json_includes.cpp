@@ -344,6 +344,8 @@ TEST_CASE("Included files lie in the asset root", "[scene][json]") {
     LoadOptions wide;
     wide.asset_root = root;
     CHECK(load_scene(root / "inner/top2.json", wide).primitives.size() == 3);
+    wide.asset_root = root / "";
+    CHECK(load_scene(root / "inner/top2.json", wide).primitives.size() == 3);
     LoadOptions sibling;  // its name begins like the folder's, but it is another
     fs::create_directories(root / "inn");
     sibling.asset_root = root / "inn";
@@ -367,6 +369,13 @@ TEST_CASE("Included files lie in the asset root", "[scene][json]") {
     fs::create_symlink(root / "inner/loop.nff", root / "inner/loop.nff");
     scenes.write("inner/top2.json", json_head + include("loop.nff") + "]}");
     CHECK_THROWS_WITH(load_scene(root / "inner/top2.json"), Catch::StartsWith(place));
+    // Behind a link, .. is the folder above the link's target, for what is included there too.
+    fs::create_directories(root / "far/below");
+    fs::create_directory_symlink(root / "far/below", root / "inner/away");
+    scenes.write("far/b.json", R"({"sahl": 1, "objects": [)" + include("c.json") + "]}");
+    scenes.write("far/c.json", R"({"sahl": 1, "objects": [{"type": "sphere"}]})");
+    scenes.write("inner/top2.json", json_head + include("away/../b.json") + "]}");
+    CHECK(load_scene(root / "inner/top2.json", wide).primitives.size() == 1);
     // .. inside the root is fine.
     fs::create_directories(root / "inner/down");
     scenes.write("inner/top2.json", json_head + include("down/../a.nff") + "]}");
