@@ -15,11 +15,13 @@ namespace {
 
 // Tells how far the parser has read.
 struct CountingIterator {
+    // NOLINTBEGIN(readability-identifier-naming): the standard's names
     using iterator_category = std::input_iterator_tag;
     using value_type = char;
     using difference_type = std::ptrdiff_t;
     using pointer = const char*;
     using reference = const char&;
+    // NOLINTEND(readability-identifier-naming)
 
     const char* at;
     const char** reached;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -184,7 +185,8 @@ constexpr std::array<ObjectType, 10> object_types = {{{"sphere", read_sphere},
 std::uint32_t add_transform(Scene& scene, const glm::dmat4& m) {
     if (m == glm::dmat4(1)) return 0;
     // To the bit: zeros have signs.
-    if (std::memcmp(&scene.transforms.back(), &m, sizeof m) != 0) scene.transforms.push_back(m);
+    using Bits = std::array<std::uint64_t, 16>;
+    if (std::bit_cast<Bits>(scene.transforms.back()) != std::bit_cast<Bits>(m)) scene.transforms.push_back(m);
     return static_cast<std::uint32_t>(scene.transforms.size() - 1);
 }
 

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/host/scene/parse.h"
@@ -240,6 +241,20 @@ TEST_CASE("Sahl scenes: errors of objects", "[scene][json]") {
         {R"({"type": "instance", "group": "a", "material": {}})", "2:36",
          "unknown key 'material' of an instance"},
     });
+    // Every solid is checked where its transform takes it.
+    const std::string far = R"(, "transform": {"translate": [1e15, 0, 0]}})";
+    const std::string tiny = R"(, "transform": {"scale": 1e-15}})";
+    const std::vector<std::pair<std::string, std::string>> solids = {
+        {"sphere", R"({"type": "sphere", "radius": 0.5)"},
+        {"box", R"({"type": "box", "min": [0, 0, 0], "max": [1, 0.5, 1])"},
+        {"disc", R"({"type": "disc", "radius": 0.5)"},
+        {"cone", R"({"type": "cone", "base": [0, 0, 0], "top": [0, 0, 0.5])"},
+        {"cone", R"({"type": "cylinder", "base": [0, 0, 0], "top": [0, 0, 1], "radius": 0.5)"},
+    };
+    for (const auto& [name, text] : solids) {
+        check_objects({{text + far, "2:1", "this " + name + " reaches beyond ±1e+15"},
+                       {text + tiny, "2:1", "the transformation shrinks this " + name + " below 1e-15"}});
+    }
     check_file({{R"("groups": {"tree": []}, "objects": [{"type": "instance", "group": "tre"}])", "1:79",
                  "there is no group 'tre'; did you mean 'tree'?"}});
 }
