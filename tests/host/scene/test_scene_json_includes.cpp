@@ -162,6 +162,22 @@ TEST_CASE("Several includes share no index by mistake", "[scene][json]") {
     }
 }
 
+TEST_CASE("Each include brings vertices of its own", "[scene][json]") {
+    const Scenes scenes;
+    const std::string both = include("a.nff") + ", " + include("a.json");
+    const Scene scene = scenes.load(both + ", " + both);
+    REQUIRE(scene.polygons.size() == 2);
+    CHECK(scene.polygons[0].first_vertex == 0);
+    CHECK(scene.polygons[1].first_vertex == 4);
+    REQUIRE(scene.triangles.size() == 4);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        CHECK(scene.triangles[i].vertices[2] == 3 * i + 2);
+        if (i % 2 == 0) continue;
+        CHECK(scene.triangles[i].normals[2] == 3 * (i / 2) + 2);
+        CHECK(scene.triangles[i].uvs[2] == 3 * (i / 2) + 2);
+    }
+}
+
 TEST_CASE("An include inside a group belongs to it", "[scene][json]") {
     const Scenes scenes;
     scenes.write("top.json", R"({"sahl": 1, "cameras": {"c": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}},
