@@ -131,6 +131,39 @@ TEST_CASE("outputs: the camera's name is in the file and the start event", "[cli
     check_refused({"--camera", "camra"}, {"--camera 'camra'", "did you mean 'camera'?", "it has camera"});
 }
 
+TEST_CASE("outputs: a scene's cameras, its first by default", "[cli]") {
+    const TemporaryFolder folder;
+    write_file(folder / "a.json", R"({
+  "sahl": 1,
+  "film": {"width": 9, "height": 9},
+  "depth": 0,
+  "parameters": {"glow": {"type": "color", "default": 0}},
+  "cameras": {"front": {"eye": [0, 0, 9], "look_at": [0, 0, 0]},
+              "back": {"eye": [0, 0, -9], "look_at": [0, 0, -20]}},
+  "objects": [{"type": "sphere", "material": {"emission": "$glow"}}]
+})");
+    const auto center = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{"render", "a.json", "-o", "a.exr", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProcessResult result = run_sahl_in(folder.path(), arguments);
+        INFO(result.err);
+        REQUIRE(result.status == 0);
+        CHECK(spec_of(folder / "a.exr").get_string_attribute("Sahl:Camera") ==
+              json_lines(result.out).at(0).at("camera").get<std::string>());
+        return read_image(folder / "a.exr").pixels.at(3 * 40);
+    };
+    CHECK(center({}) == 0);
+    CHECK(center({"--set", "glow=0.5"}) == 0.5F);
+    CHECK(center({"--set", "glow=0.5", "--camera", "front"}) == 0.5F);
+    CHECK(center({"--set", "glow=0.5", "--camera", "back"}) == 0);
+    const ProcessResult result = run_sahl_in(folder.path(), {"render", "a.json", "--camera", "top"});
+    CHECK(result.status == 2);
+    CHECK(contains(result.err, "it has front, back"));
+    const ProcessResult unknown = run_sahl_in(folder.path(), {"render", "a.json", "--set", "glw=1"});
+    CHECK(unknown.status == 2);
+    CHECK(contains(unknown.err, "did you mean 'glow'?"));
+}
+
 TEST_CASE("outputs: parameters and folders of scenes", "[cli]") {
     check_refused({"--set", "radius"}, {"--set 'radius': NAME=VALUE"});
     check_refused({"--set", "=1"}, {"NAME=VALUE"});

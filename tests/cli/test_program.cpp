@@ -25,6 +25,10 @@ TEST_CASE("program: --help of each command has examples", "[cli]") {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                       {"render", "--help"},
                                                       {"compare", "-h"},
+                                                      {"info", "--help"},
+                                                      {"convert", "--help"},
+                                                      {"completion", "--help"},
+                                                      {"man", "--help"},
                                                       {"devices", "--help"}}) {
         const ProcessResult result = run_sahl(arguments);
         INFO(result.out << result.err);
