@@ -68,7 +68,7 @@ std::vector<BuildPrimitive> make_primitives(Spread spread, std::size_t size, boo
     std::vector<BuildPrimitive> primitives(size);
     for (std::size_t i = 0; i < size; ++i) {
         primitives[i].bounds = make_bounds(spread, i, random);
-        primitives[i].kind = mixed ? static_cast<std::uint32_t>(random() % 5) : SAHL_KIND_TRIANGLE;
+        primitives[i].kind = mixed ? static_cast<std::uint32_t>(random() % 9) : SAHL_KIND_TRIANGLE;
         primitives[i].id = static_cast<std::uint32_t>(i);
     }
     for (std::size_t i = size; i > 1; --i) std::swap(primitives[i - 1], primitives[random() % i]);

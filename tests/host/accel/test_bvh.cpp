@@ -86,14 +86,12 @@ TEST_CASE("up to four primitives of a kind are one leaf", "[bvh]") {
 
 TEST_CASE("kinds do not share leaves even where their boxes coincide", "[bvh]") {
     std::vector<BuildPrimitive> primitives;
-    for (std::uint32_t id = 0; id < 20; ++id) primitives.push_back({cube(0, 0, 0, 1), id % 5, id});
+    for (std::uint32_t id = 0; id < 36; ++id) primitives.push_back({cube(0, 0, 0, 1), id % 9, id});
     const Bvh bvh = build_bvh(primitives);
     CHECK(walk(bvh, primitives).fault == "");
-    // Four of each of five kinds: split by kind, every block is full.
-    REQUIRE(bvh.leaves.size() == 5);
-    CHECK(bvh.leaf_lines == 3 + 2 + 4 + 4 + 3);
-    CHECK(bvh.nodes.size() == 1);
-    CHECK(bvh.statistics.sah_cost == Approx(1 + 1 + 1 + 1.5 + 1.5 + 2));
+    // Four of each of nine kinds: split by kind, every block is full, each instance is alone.
+    REQUIRE(bvh.leaves.size() == 12);
+    CHECK(bvh.leaf_lines == 3 + 2 + 4 + 4 + 3 + 4 + 4 + 4);
 }
 
 TEST_CASE("coinciding boxes fill their blocks in the order of ids", "[bvh]") {
@@ -112,12 +110,16 @@ TEST_CASE("blocks take the lines of their structs", "[bvh]") {
     CHECK(block_lines(SAHL_KIND_ELLIPSOID) == 4);
     CHECK(block_lines(SAHL_KIND_CONE) == 4);
     CHECK(block_lines(SAHL_KIND_POLYGON) == 3);
+    CHECK(block_lines(SAHL_KIND_SOLID_CONE) == 4);
+    CHECK(block_lines(SAHL_KIND_DISC) == 4);
+    CHECK(block_lines(SAHL_KIND_BOX) == 4);
+    CHECK(block_lines(SAHL_KIND_INSTANCE) == 0);
 }
 
 TEST_CASE("a leaf buffer past what references can address is an error of the scene", "[bvh]") {
-    CHECK(offset_after_block((1u << 28) - 3, SAHL_KIND_TRIANGLE) == 1u << 28);
+    CHECK(offset_after_block((1u << 27) - 3, SAHL_KIND_TRIANGLE) == 1u << 27);
     try {
-        offset_after_block((1u << 28) - 2, SAHL_KIND_TRIANGLE);
+        offset_after_block((1u << 27) - 2, SAHL_KIND_TRIANGLE);
         FAIL("no error");
     } catch (const Error& error) {
         CHECK(error.code() == ExitCode::scene);
@@ -125,5 +127,30 @@ TEST_CASE("a leaf buffer past what references can address is an error of the sce
 }
 
 TEST_CASE("a primitive of unknown kind is refused", "[bvh]") {
-    CHECK_THROWS_AS(build_bvh({{cube(0, 0, 0, 1), 5, 0}}), Error);
+    CHECK_THROWS_AS(build_bvh({{cube(0, 0, 0, 1), 9, 0}}), Error);
+}
+
+TEST_CASE("trees in one forest keep their leaves and children", "[bvh]") {
+    const std::vector<BuildPrimitive> first = make_primitives(Spread::uniform, 300, true, 1);
+    const std::vector<BuildPrimitive> second = make_primitives(Spread::uniform, 200, true, 2);
+    Bvh forest = build_bvh(first);
+    const Bvh alone = build_bvh(second);
+    const std::uint32_t nodes = static_cast<std::uint32_t>(forest.nodes.size()), lines = forest.leaf_lines;
+    REQUIRE(append_tree(forest, alone) == nodes);
+    CHECK(forest.leaf_lines == lines + alone.leaf_lines);
+    // Moved back, the second tree is whole.
+    Bvh moved_back = alone;
+    std::copy(forest.nodes.begin() + nodes, forest.nodes.end(), moved_back.nodes.begin());
+    std::copy(forest.leaves.end() - static_cast<std::ptrdiff_t>(alone.leaves.size()), forest.leaves.end(),
+              moved_back.leaves.begin());
+    for (device::BvhNode& node : moved_back.nodes) {
+        for (int slot = 0; slot < 8; ++slot) {
+            if (node.lo_x[slot] > node.hi_x[slot]) continue;
+            const bool leaf = (node.child[slot] & SAHL_CHILD_LEAF) != 0;
+            if (leaf && (node.child[slot] >> 27 & 15u) == SAHL_KIND_INSTANCE) continue;
+            node.child[slot] -= leaf ? lines : nodes;
+        }
+    }
+    CHECK(walk(moved_back, second).fault == "");
+    CHECK(walk(alone, second).fault == "");
 }

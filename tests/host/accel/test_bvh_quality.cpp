@@ -20,7 +20,8 @@ std::uint32_t split_by_median(std::vector<BuildPrimitive>& primitives, BinaryTre
     const auto first = primitives.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = primitives.begin() + static_cast<std::ptrdiff_t>(end);
     const bool one_kind = std::all_of(first, last, [&](const auto& p) { return p.kind == first->kind; });
-    if (end - begin <= 4 && one_kind) return binary_leaf;
+    const std::size_t most = first->kind == SAHL_KIND_INSTANCE ? 1 : 4;
+    if (end - begin <= most && one_kind) return binary_leaf;
     Bounds bounds = empty_bounds();
     for (auto p = first; p != last; ++p) extend(bounds, p->bounds);
     int axis = 0;

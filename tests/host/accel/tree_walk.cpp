@@ -8,8 +8,9 @@ namespace sahl::test {
 namespace {
 
 // Independent of the engine's: lines of a block and weight of a visit, by kind.
-constexpr std::uint32_t lines_of[] = {3, 2, 4, 4, 3};
-constexpr double weight_of[] = {1, 1, 1.5, 1.5, 2};
+constexpr std::uint32_t lines_of[] = {3, 2, 4, 4, 3, 4, 4, 4, 0};
+constexpr double weight_of[] = {1, 1, 1.5, 1.5, 2, 2, 1.5, 1.5, 6};
+constexpr std::uint32_t instance = 8;
 
 bool same(const Bounds& a, const Bounds& b) {
     return std::equal(a.lo, a.lo + 3, b.lo) && std::equal(a.hi, a.hi + 3, b.hi);
@@ -60,11 +61,13 @@ Below Walk::leaf(std::uint32_t reference) {
         return below;
     }
     const BvhLeaf& block = bvh.leaves[k];
-    const std::uint32_t kind = reference >> 28 & 7u;
-    if (kind > 4 || kind != block.kind) fault("leaf " + std::to_string(k) + ": wrong kind");
-    if ((reference & 0x0fffffffu) != next_line) fault("leaf " + std::to_string(k) + ": wrong offset");
-    next_line += lines_of[std::min(kind, 4u)];
-    if (block.count < 1 || block.count > 4) fault("leaf " + std::to_string(k) + ": wrong count");
+    const std::uint32_t kind = reference >> 27 & 15u;
+    if (kind > instance || kind != block.kind) fault("leaf " + std::to_string(k) + ": wrong kind");
+    const std::uint32_t offset = kind == instance ? block.ids[0] : next_line;
+    if ((reference & 0x07ffffffu) != offset) fault("leaf " + std::to_string(k) + ": wrong offset");
+    next_line += lines_of[std::min(kind, instance)];
+    if (block.count < 1 || block.count > (kind == instance ? 1 : 4))
+        fault("leaf " + std::to_string(k) + ": wrong count");
     for (std::uint32_t i = 0; i < std::min(block.count, 4u); ++i) {
         const std::uint32_t id = block.ids[i];
         if (i > 0 && block.ids[i - 1] >= id) fault("leaf " + std::to_string(k) + ": ids do not ascend");
@@ -76,8 +79,8 @@ Below Walk::leaf(std::uint32_t reference) {
         if (by_id[id]->kind != kind) fault("primitive " + std::to_string(id) + " in a leaf of another kind");
         grow(below.bounds, by_id[id]->bounds);
     }
-    below.area_sum = weight_of[std::min(kind, 4u)] * area(below.bounds);
-    below.box_sum = weight_of[std::min(kind, 4u)];
+    below.area_sum = weight_of[std::min(kind, instance)] * area(below.bounds);
+    below.box_sum = weight_of[std::min(kind, instance)];
     return below;
 }
 
