@@ -27,7 +27,7 @@ double frobenius(const dmat3& m) {
     return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
-dmat4 placed(const dmat3& linear, const dvec3& at) {
+dmat4 affine(const dmat3& linear, const dvec3& at) {
     dmat4 m(linear);
     m[3] = glm::dvec4(at, 1);
     return m;
@@ -53,11 +53,11 @@ public:
 
     Target add(ShapeKind kind, const dvec3& center, double size, bool transformed) {
         target_.center = center;
-        target_.flat = kind == ShapeKind::triangle || kind == ShapeKind::polygon;
+        target_.flat = kind == ShapeKind::triangle || kind == ShapeKind::polygon || kind == ShapeKind::disc;
         linear_ = transformed || kind == ShapeKind::ellipsoid ? random_linear(random_) : dmat3(1);
         if (kind == ShapeKind::sphere && transformed) linear_ = rotation(random_) * uniform(random_, 0.5, 2);
         const bool identity = linear_ == dmat3(1);
-        world_from_object_ = identity ? dmat4(1) : placed(linear_, center);
+        world_from_object_ = identity ? dmat4(1) : affine(linear_, center);
         object_center_ = identity ? center : dvec3(0);
         size_ = size;
         switch (kind) {
@@ -72,12 +72,22 @@ public:
                 add_round();
                 break;
             case ShapeKind::cone:
-                add_cone(uniform(random_, 0, 1) < 0.3 ? 0 : uniform(random_, 0.1, 1));
+            case ShapeKind::solid_cone:
+                add_cone(uniform(random_, 0, 1) < 0.3 ? 0 : uniform(random_, 0.1, 1),
+                         kind == ShapeKind::solid_cone);
                 break;
             case ShapeKind::cylinder:
-                add_cone(-1);
+            case ShapeKind::solid_cylinder:
+                add_cone(-1, kind == ShapeKind::solid_cylinder);
+                break;
+            case ShapeKind::disc:
+                add_disc();
+                break;
+            case ShapeKind::box:
+                add_box();
                 break;
         }
+        scene_.primitives.back().sides = random_sides();
         for (const Target::Point& point : target_.points)
             target_.size = std::max(target_.size, glm::distance(point.position, center));
         return target_;
@@ -135,7 +145,6 @@ private:
         // Where no transform rounds, the numbers are floats, so that the device has them exactly.
         sphere.radius = static_cast<float>(size_ * uniform(random_, 0.1, 1));
         target_.id = oracle::add_sphere(scene_, sphere, material_, world_from_object_);
-        scene_.primitives.back().sides = random_sides();
         set_condition(linear_);
         for (int i = 0; i < 12; ++i) {
             const dvec3 n = i < 3 ? dvec3(i == 0, i == 1, i == 2) : unit_vector(random_);
@@ -145,8 +154,9 @@ private:
     }
 
     /// `apex_share` of the base radius; negative: a cylinder.
-    void add_cone(double apex_share) {
+    void add_cone(double apex_share, bool capped) {
         Cone cone;
+        cone.capped = capped;
         const dvec3 axis = unit_vector(random_) * (size_ * uniform(random_, 0.2, 1.5));
         cone.base = object_center_ - 0.5 * axis;
         cone.apex = object_center_ + 0.5 * axis;
@@ -154,8 +164,6 @@ private:
         cone.apex_radius = cone.base_radius * (apex_share < 0 ? 1 : apex_share);
         if (uniform(random_, 0, 1) < 0.5) std::swap(cone.base_radius, cone.apex_radius);
         target_.id = oracle::add_cone(scene_, cone, material_, world_from_object_);
-        scene_.primitives.back().sides = random_sides();
-
         if (apex_share == 0) {
             const dvec3 apex = cone.apex_radius == 0 ? cone.apex : cone.base;
             target_.tips.emplace_back(world_from_object_ * glm::dvec4(apex, 1));
@@ -172,8 +180,49 @@ private:
             const dvec3 out = x * std::cos(angle) + y * std::sin(angle);
             const double radius = cone.base_radius + height * (cone.apex_radius - cone.base_radius);
             add_point(cone.base + height * axis + radius * out, out - slope * unit);
+            if (capped && i % 3 == 0) add_point(cone.base + 0.7 * cone.base_radius * out, -unit);
+            if (capped && i % 3 == 1) add_point(cone.apex + 0.7 * cone.apex_radius * out, unit);
         }
         target_.size = std::hypot(glm::length(axis) / 2, widest) * frobenius(linear_);
+    }
+
+    void add_disc() {
+        Disc disc;
+        disc.center = object_center_;
+        disc.normal = unit_vector(random_) * uniform(random_, 0.1, 10);
+        disc.radius = size_ * uniform(random_, 0.1, 1);
+        target_.id = oracle::add_disc(scene_, disc, material_, world_from_object_);
+        set_condition(linear_);
+        const dvec3 unit = glm::normalize(disc.normal);
+        const dvec3 x = glm::normalize(glm::cross(unit, unit_vector(random_)));
+        const dvec3 y = glm::cross(unit, x);
+        for (int i = 0; i < 12; ++i) {
+            const double angle = uniform(random_, 0, 2 * std::numbers::pi);
+            const double share = i < 5 ? 1 : std::sqrt(uniform(random_, 0, 1));
+            add_point(disc.center + disc.radius * share * (x * std::cos(angle) + y * std::sin(angle)), unit);
+        }
+        target_.size = disc.radius * frobenius(linear_);
+    }
+
+    void add_box() {
+        dvec3 half;
+        for (int k = 0; k < 3; ++k) half[k] = size_ * uniform(random_, 0.1, 0.8);
+        // Where no transform rounds, the numbers are floats, so that the device has them exactly.
+        const Box box{dvec3(glm::vec3(object_center_ - half)), dvec3(glm::vec3(object_center_ + half))};
+        target_.id = oracle::add_box(scene_, box, material_, world_from_object_);
+        set_condition(linear_ * dmat3(dvec3(half.x, 0, 0), dvec3(0, half.y, 0), dvec3(0, 0, half.z)));
+        for (int i = 0; i < 18; ++i) {
+            // On a face; two in three on one of its edges, some at a corner.
+            const int axis = i % 3;
+            dvec3 share(uniform(random_, 0, 1), uniform(random_, 0, 1), uniform(random_, 0, 1)), normal(0);
+            share[axis] = i / 3 % 2;
+            normal[axis] = 2 * share[axis] - 1;
+            if (i < 12) share[(axis + 1) % 3] = std::round(share[(axis + 1) % 3]);
+            if (i < 3) share[(axis + 2) % 3] = std::round(share[(axis + 2) % 3]);
+            add_point(box.lo + share * (box.hi - box.lo), normal);
+            if (i < 3) target_.tips.push_back(target_.points.back().position);
+        }
+        target_.size = glm::length(half) * frobenius(linear_);
     }
 
     Scene& scene_;
@@ -230,6 +279,23 @@ Target add_random_shape(Scene& scene, Random& random, ShapeKind kind, const dvec
     return Builder(scene, random, material).add(kind, center, size, transformed);
 }
 
+Target placed(const Target& target, const dmat4& world_from_group, std::uint32_t instance) {
+    const dmat3 linear(world_from_group);
+    const dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
+    const auto point = [&](const dvec3& p) { return dvec3(world_from_group * glm::dvec4(p, 1)); };
+    Target result = target;
+    result.instance = instance;
+    result.center = point(target.center);
+    result.size = target.size * frobenius(linear);
+    const double condition = frobenius(linear) * frobenius(glm::inverse(linear)) / 3;
+    result.condition = target.condition * condition;
+    result.magnitude = condition * glm::length(dvec3(world_from_group[3])) +
+                       frobenius(linear) * std::max(glm::length(target.center), target.magnitude);
+    for (Target::Point& p : result.points) p = {point(p.position), glm::normalize(normal_matrix * p.normal)};
+    for (dvec3& tip : result.tips) tip = point(tip);
+    return result;
+}
+
 TestRay random_ray(Random& random, const Target& target) {
     const auto points = static_cast<double>(target.points.size());
     const Target::Point& point = target.points[static_cast<std::size_t>(uniform(random, 0, points))];
@@ -238,7 +304,7 @@ TestRay random_ray(Random& random, const Target& target) {
     dvec3 direction = unit_vector(random);
     dvec3 aim = target.center + 1.2 * target.size * in_ball(random);
     double distance = far;
-    std::uint32_t exclude = SAHL_NO_PRIMITIVE;
+    bool starts_on_it = false;
     if (kind < 2) {
         // Anywhere near.
     } else if (kind < 3) {
@@ -254,7 +320,7 @@ TestRay random_ray(Random& random, const Target& target) {
     } else {
         aim = point.position;
         distance = 0;
-        exclude = target.id;
+        starts_on_it = true;
     }
     TestRay ray;
     ray.origin = glm::vec3(aim - distance * direction);
@@ -262,7 +328,10 @@ TestRay random_ray(Random& random, const Target& target) {
     // The origin was rounded: aim anew from where it is now, but keep exact zeros.
     const dvec3 straight = kind >= 5 || distance == 0 ? direction : glm::normalize(aim - dvec3(ray.origin));
     ray.direction = glm::vec3(straight * length);
-    ray.exclude = exclude;
+    if (starts_on_it) {
+        ray.exclude = target.id;
+        ray.exclude_instance = target.instance;
+    }
     return ray;
 }
 
@@ -271,13 +340,8 @@ double reach_of(const TestRay& ray, const Target& target) {
 }
 
 double rounding_of(const TestRay& ray, const Target& target) {
-    return 0x1p-24 * (target.condition * reach_of(ray, target) + glm::length(target.center));
-}
-
-std::vector<oracle::Shape> oracle_shapes(const Scene& scene) {
-    std::vector<oracle::Shape> shapes;
-    for (const Primitive& primitive : scene.primitives) shapes.emplace_back(scene, primitive);
-    return shapes;
+    return 0x1p-24 * (target.condition * reach_of(ray, target) +
+                      std::max(glm::length(target.center), target.magnitude));
 }
 
 }  // namespace sahl::tests

@@ -14,7 +14,19 @@
 
 namespace sahl::tests {
 
-enum class ShapeKind { triangle, polygon, sphere, ellipsoid, cone, cylinder };
+enum class ShapeKind {
+    triangle,
+    polygon,
+    sphere,
+    ellipsoid,
+    cone,
+    cylinder,
+    disc,
+    box,
+    solid_cone,
+    solid_cylinder
+};
+constexpr int shape_kind_count = 10;
 
 using Random = std::mt19937_64;
 
@@ -31,10 +43,12 @@ struct Target {
         glm::dvec3 position, normal;
     };
     std::uint32_t id = 0;
+    std::uint32_t instance = 0;
     bool flat = false;
     glm::dvec3 center{0};
     double size = 1;               ///< a radius around `center`
     double condition = 1;          ///< how unequally its object space is stretched
+    double magnitude = 0;          ///< of the coordinates on the way to it, world units
     std::vector<Point> points;     ///< on the surface, on edges, at corners
     std::vector<glm::dvec3> tips;  ///< corners and apexes
 };
@@ -43,6 +57,9 @@ struct Target {
 /// coordinates (spheres and ellipsoids: by what their kind asks for).
 Target add_random_shape(Scene& scene, Random& random, ShapeKind kind, const glm::dvec3& center, double size,
                         bool transformed, const Material& material = {});
+
+/// Where an instance of its group by `world_from_group` has the target.
+Target placed(const Target& target, const glm::dmat4& world_from_group, std::uint32_t instance);
 
 /// A ray at the target or just past it, from near, far or within; along edges, at corners, grazing,
 /// parallel to axes, starting on the surface; directions of any length.
@@ -53,7 +70,5 @@ double reach_of(const TestRay& ray, const Target& target);
 
 /// How far single precision may move a ray against `target`, in the world.
 double rounding_of(const TestRay& ray, const Target& target);
-
-std::vector<oracle::Shape> oracle_shapes(const Scene& scene);
 
 }  // namespace sahl::tests

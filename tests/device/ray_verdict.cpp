@@ -14,15 +14,19 @@ using glm::dvec3;
 
 struct Answer {
     std::uint32_t primitive = SAHL_NO_PRIMITIVE;
-    oracle::Crossing crossing{std::numeric_limits<double>::infinity(), {}, {}, {}};
+    std::uint32_t instance = 0;
+    oracle::Crossing crossing{std::numeric_limits<double>::infinity()};
 };
 
-Answer nearest(const std::vector<oracle::Shape>& shapes, const oracle::Ray& ray, std::uint32_t start) {
+Answer nearest(const std::vector<oracle::PlacedShape>& shapes, const oracle::Ray& ray, const TestRay& start) {
     Answer best;
-    for (std::uint32_t id = 0; id < shapes.size(); ++id) {
-        const oracle::Crossings crossings = shapes[id].cross(ray, id == start);
+    for (const oracle::PlacedShape& placed : shapes) {
+        const bool starts_here =
+            placed.primitive == start.exclude && placed.instance == start.exclude_instance;
+        const oracle::Crossings crossings = placed.shape.cross(ray, starts_here);
         for (int i = 0; i < crossings.count; ++i) {
-            if (crossings.at[i].t > 0 && crossings.at[i].t < best.crossing.t) best = {id, crossings.at[i]};
+            if (crossings.at[i].t > 0 && crossings.at[i].t < best.crossing.t)
+                best = {placed.primitive, placed.instance, crossings.at[i]};
         }
     }
     return best;
@@ -43,7 +47,7 @@ bool undecided(const Target& target, const dvec3& origin, const dvec3& along, do
 
 }  // namespace
 
-Verdict judge(const std::vector<oracle::Shape>& shapes, const std::vector<Target>& targets,
+Verdict judge(const std::vector<oracle::PlacedShape>& shapes, const std::vector<Target>& targets,
               const TestRay& ray, double roundings) {
     const dvec3 origin(ray.origin), direction(ray.direction);
     const double length = glm::length(direction);
@@ -51,8 +55,10 @@ Verdict judge(const std::vector<oracle::Shape>& shapes, const std::vector<Target
     const dvec3 other = std::abs(along.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
     const dvec3 u = glm::normalize(glm::cross(along, other));
     const dvec3 v = glm::cross(along, u);
-    const Answer itself = nearest(shapes, {origin, direction}, ray.exclude);
-    Verdict verdict{true, itself.primitive, itself.crossing.t, itself.crossing.t, itself.crossing, 0};
+    const Answer itself = nearest(shapes, {origin, direction}, ray);
+    Verdict verdict{
+        true, itself.primitive, itself.instance, true, itself.crossing.t, itself.crossing.t, itself.crossing,
+        0};
     double reach = 0;
     for (const Target& target : targets) {
         verdict.rounding = std::max(verdict.rounding, roundings * rounding_of(ray, target));
@@ -63,8 +69,9 @@ Verdict judge(const std::vector<oracle::Shape>& shapes, const std::vector<Target
         verdict.sure = verdict.sure && !undecided(target, origin, along, move);
     const auto ask = [&](const dvec3& moved_origin, const dvec3& moved_direction) {
         if (!verdict.sure) return;
-        const Answer moved = nearest(shapes, {moved_origin, moved_direction}, ray.exclude);
-        verdict.sure = moved.primitive == itself.primitive;
+        const Answer moved = nearest(shapes, {moved_origin, moved_direction}, ray);
+        verdict.sure = moved.primitive == itself.primitive && moved.instance == itself.instance;
+        verdict.one_face = verdict.one_face && moved.crossing.part == itself.crossing.part;
         verdict.t_least = std::min(verdict.t_least, moved.crossing.t);
         verdict.t_most = std::max(verdict.t_most, moved.crossing.t);
     };

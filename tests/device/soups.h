@@ -18,6 +18,14 @@ struct Soup {
 /// Primitives of all kinds crowded together about a point at distance `offset`, every eighth of them twice.
 Soup random_soup(Random& random, int count, double size, double offset);
 
+/// Groups of all kinds of primitives, nested, placed by all kinds of affine transforms beside primitives of
+/// the world, the first instance twice in one place. Targets are in the order of (instance, id).
+Soup instanced_soup(Random& random, double size, double offset);
+
+/// The same without groups: every instance's primitives in the world by the products of their transforms.
+/// `soup`'s targets name the world's primitives in the same order.
+Soup without_instances(const Soup& soup);
+
 /// Squares that lie on the faces of cubes and on one another: what they are hit by runs along the boxes of
 /// the tree. Each as a polygon, as two triangles or as both.
 Soup axis_parallel_soup(Random& random, int count);

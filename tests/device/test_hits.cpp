@@ -128,7 +128,7 @@ TEST_CASE("walks meet as many surfaces as the oracle") {
     RayTracer tracer;
     Random random(13);
     const Soup soup = random_soup(random, 24, 1, 0);
-    const std::vector<oracle::Shape> shapes = oracle_shapes(soup.scene);
+    const std::vector<oracle::PlacedShape> shapes = oracle::place_shapes(soup.scene);
     std::vector<TestRay> rays;
     for (int i = 0; i < 20000; ++i)
         rays.push_back({vec3(6.0 * unit_vector(random)), vec3(unit_vector(random))});
@@ -137,8 +137,9 @@ TEST_CASE("walks meet as many surfaces as the oracle") {
     for (std::size_t i = 0; i < rays.size(); ++i) {
         std::vector<double> crossings;
         double margin = 1;
-        for (const oracle::Shape& shape : shapes) {
-            const oracle::Crossings c = shape.cross({dvec3(rays[i].origin), dvec3(rays[i].direction)}, false);
+        for (const oracle::PlacedShape& placed : shapes) {
+            const oracle::Crossings c =
+                placed.shape.cross({dvec3(rays[i].origin), dvec3(rays[i].direction)}, false);
             margin = std::min(margin, c.margin);
             for (int k = 0; k < c.count; ++k) {
                 if (c.at[k].t > 0) crossings.push_back(c.at[k].t);

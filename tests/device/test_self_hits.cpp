@@ -97,12 +97,20 @@ void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t 
         const double blur = 4 * static_cast<double>(surface.offset) / std::max(std::abs(steepness), 1e-9);
         if (blur > object.size) continue;
         const oracle::Ray exact{surface.position, dvec3(children[k].direction)};
-        const auto wanted =
-            oracle.closest_hit(exact, 1e-6 * object.size, oracle::infinity, {children[k].exclude, 0});
+        const auto wanted = oracle.closest_hit(exact, 1e-6 * object.size, oracle::infinity,
+                                               {children[k].exclude, children[k].exclude_instance});
         if (next[k].hit() && t < 0.5 * (wanted ? wanted->t : oracle::infinity)) {
-            const bool on_edge = next[k].primitive != children[k].exclude && t < blur;
+            const bool itself =
+                next[k].primitive == children[k].exclude && next[k].instance == children[k].exclude_instance;
+            // Of another face of a solid, too, within what rays are moved.
+            const bool near_rim = wanted && wanted->edge_distance * object.size < 4 * blur;
+            const bool on_edge = itself ? near_rim : t < blur;
             score.edge_hits += on_edge;
-            score.self_hits += !on_edge && (!wanted || wanted->t > blur);
+            const bool self_hit = !on_edge && (!wanted || wanted->t > blur);
+            if (self_hit && ++score.self_hits <= 3)
+                UNSCOPED_INFO("met at " << t << ", oracle at " << (wanted ? wanted->t : oracle::infinity)
+                                        << ", rim within " << (wanted ? wanted->edge_distance : 0)
+                                        << ", steepness " << steepness << ", blur " << blur);
         } else if (!next[k].hit() && wanted) {
             score.leaks += wanted->t > blur && wanted->edge_distance * object.size > 4 * blur;
         }
@@ -126,9 +134,44 @@ std::vector<Object> objects(Random& random, const Place& place) {
     };
     oracle::add_sphere(add("sphere"), {center, size}, material);
     oracle::add_sphere(add("ellipsoid"), {{0, 0, 0}, size}, material, squeeze);
+    oracle::add_box(add("box"), {dvec3(vec3(center - size)), dvec3(vec3(center + 0.7 * size))}, material);
+    oracle::add_box(add("oblique box"), {dvec3(-0.7 * size), dvec3(0.8, 0.6, 0.7) * size}, material, squeeze);
     const dvec3 axis = size * unit_vector(random);
     oracle::add_cone(add("cylinder"), {center - axis, center + axis, size, size}, material);
     oracle::add_cone(add("cone"), {center - axis, center + axis, 1.5 * size, 0}, material);
+    oracle::add_cone(add("solid cylinder"), {center - axis, center + axis, size, size, true}, material);
+    oracle::add_cone(add("solid cone"), {center - axis, center + axis, 0.3 * size, 1.5 * size, true},
+                     material);
+    // Of unit size in their groups, one of these placed by two transforms.
+    glm::dmat4 placement = squeeze;
+    for (int k = 0; k < 3; ++k) placement[k] *= size;
+    const auto add_placed = [&](const std::string& name, const auto& add_to, bool nested) {
+        Scene& scene = add(name);
+        const std::uint32_t group = oracle::add_group(scene);
+        add_to(scene);
+        if (!nested) return oracle::add_instance(scene, group, placement);
+        const std::uint32_t nest = oracle::add_group(scene);
+        const glm::dmat4 inner(random_linear(random));
+        oracle::add_instance(scene, nest, group, inner);
+        oracle::add_instance(scene, nest, placement * glm::inverse(inner));
+    };
+    const auto add_ball = [&](Scene& scene) { oracle::add_sphere(scene, {{0, 0, 0}, 1}, material); };
+    const auto add_brick = [&](Scene& scene) { oracle::add_box(scene, {dvec3(-0.8), dvec3(0.7)}, material); };
+    const auto add_drum = [&](Scene& scene) {
+        oracle::add_cone(scene, {{0, 0, -1}, {0, 0.1, 1}, 1, 0.8, true}, material);
+    };
+    const auto add_facets = [&](Scene& scene) {
+        const Scene mesh = icosphere(random, 2, 1, 0, dvec3(0)).scene();
+        scene.vertices = mesh.vertices;
+        scene.triangles = mesh.triangles;
+        scene.primitives = mesh.primitives;
+        scene.materials = {material};
+        scene.groups.back().primitive_count = static_cast<std::uint32_t>(mesh.primitives.size());
+    };
+    add_placed("instance of a sphere", add_ball, false);
+    add_placed("instance of a box", add_brick, false);
+    add_placed("nested instance of a solid cone", add_drum, true);
+    add_placed("nested instance of triangles", add_facets, true);
     const auto add_mesh = [&](const std::string& name, const ClosedMesh& mesh) {
         Scene& scene = add(name);
         scene = mesh.scene();

@@ -88,7 +88,8 @@ TEST_CASE("trees over sizes from 1e-6 to 1e6 find what a search of all leaves fi
     for (int i = 0; i < 120; ++i) {
         const double size = std::pow(10.0, uniform(random, -6, 6));
         const glm::vec3 center(size * 3.0 * unit_vector(random));
-        soup.targets.push_back(add_random_shape(soup.scene, random, static_cast<ShapeKind>(i % 6),
+        soup.targets.push_back(add_random_shape(soup.scene, random,
+                                                static_cast<ShapeKind>(i % shape_kind_count),
                                                 glm::dvec3(center), size, i % 2 == 0));
     }
     DeviceScene scene = tracer.upload(soup.scene);

@@ -10,17 +10,22 @@ constexpr const char* kKernels = R"(
 #include "kernels/shade.cl"
 #include "kernels/shadow.cl"
 
-kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices, const global uint* children,
-                        const uint child_count, const float extent, const global float* rays, const global uint* ray_ids,
+kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices,
+                        const global DeviceInstance* instances, const global uint* children,
+                        const global uint* child_instances, const uint child_count, const float extent,
+                        const global float* rays, const global uint* ray_ids,
                         global float* hits, global uint* hit_ids, const uint count) {
-    const Bvh bvh = {0, leaves, polygon_vertices, 0, extent};
+    const Bvh bvh = {0, leaves, polygon_vertices, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
-        RayShear shear = ray_shear(ray.origin, ray.direction);
         HitState state = hit_state(0.0f, INFINITY);
-        RayBoxTest boxes = ray_box_test(ray.origin, ray.direction, extent);
+        TracedRay here = traced_ray(ray.origin, ray.direction, &ray, SAHL_WORLD, extent);
         for (uint k = 0; k < child_count; ++k) {
-            intersect_leaf(&bvh, children[k], &ray, &shear, &boxes, &state, false);
+            if (child_instances[k] != state.inside_of) {
+                state.inside_of = child_instances[k];
+                here = traced_in_instance(&bvh, &ray, state.inside_of - 1u);
+            }
+            intersect_leaf(&bvh, children[k], &here.ray, &here.shear, &here.boxes, &state, false);
         }
         store_hit(hits, hit_ids, count, i, &state);
     }
@@ -42,12 +47,13 @@ kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const 
     const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
-        global uint* crossings = out + (size_t)i * (1u + 2u * longest);
+        global uint* crossings = out + (size_t)i * (1u + 3u * longest);
         uint met = 0;
         HitState hit = closest_hit(&bvh, &ray, hit_state(0.0f, t_max));
         while (hit.primitive != SAHL_NO_PRIMITIVE && met < longest) {
             crossings[1u + met] = hit.primitive;
-            crossings[1u + longest + met] = as_uint(hit.t);
+            crossings[1u + longest + met] = hit.instance;
+            crossings[1u + 2u * longest + met] = as_uint(hit.t);
             ++met;
             hit = closest_hit(&bvh, &ray, hit_state_behind(hit, t_max));
         }
@@ -79,17 +85,41 @@ kernel void surfaces(const global DevicePrimitive* primitives, const global floa
 }
 )";
 
-/// The leaves that the tree refers to.
-std::vector<std::uint32_t> leaf_children(DeviceScene& scene) {
-    std::vector<std::uint32_t> children;
-    for (const device::BvhNode& node :
-         scene.nodes.map<device::BvhNode>(MapMode::read, scene.nodes.bytes() / sizeof(device::BvhNode))) {
-        for (int slot = 0; slot < 8; ++slot) {
-            if (node.lo_x[slot] <= node.hi_x[slot] && (node.child[slot] & SAHL_CHILD_LEAF))
-                children.push_back(node.child[slot]);
+/// Leaves of primitives with the instances they are in.
+struct Leaves {
+    std::vector<std::uint32_t> children, instances;
+};
+
+/// The leaves of the world's tree, then those of each instance's.
+Leaves all_leaves(DeviceScene& scene) {
+    const auto nodes =
+        scene.nodes.map<device::BvhNode>(MapMode::read, scene.nodes.bytes() / sizeof(device::BvhNode));
+    const auto instances = scene.instances.map<device::DeviceInstance>(
+        MapMode::read, scene.instances.bytes() / sizeof(device::DeviceInstance));
+    Leaves leaves;
+    std::vector<std::uint32_t> placed;
+    const auto collect = [&](std::uint32_t root, std::uint32_t instance) {
+        std::vector<std::uint32_t> waiting{root};
+        while (!waiting.empty()) {
+            const device::BvhNode& node = nodes[waiting.back()];
+            waiting.pop_back();
+            for (int slot = 0; slot < 8; ++slot) {
+                const std::uint32_t child = node.child[slot];
+                if (!(node.lo_x[slot] <= node.hi_x[slot])) continue;
+                if (!(child & SAHL_CHILD_LEAF)) {
+                    waiting.push_back(child);
+                } else if ((child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK) == SAHL_KIND_INSTANCE) {
+                    placed.push_back(child & SAHL_CHILD_OFFSET_MASK);
+                } else {
+                    leaves.children.push_back(child);
+                    leaves.instances.push_back(instance);
+                }
+            }
         }
-    }
-    return children;
+    };
+    collect(0, SAHL_WORLD);
+    for (const std::uint32_t i : std::vector(placed)) collect(instances[i].root, i + 1);
+    return leaves;
 }
 
 glm::dvec3 sum_of_parts(const float* parts) {
@@ -104,7 +134,8 @@ bool operator==(const TestHit& a, const TestHit& b) {
     const auto same = [](float x, float y) {
         return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
     };
-    return a.primitive == b.primitive && same(a.t, b.t) && same(a.u, b.u) && same(a.v, b.v);
+    return a.primitive == b.primitive && a.instance == b.instance && same(a.t, b.t) && same(a.u, b.u) &&
+           same(a.v, b.v);
 }
 
 RayTracer::RayTracer(const std::string& options) : runner_(kKernels, options) {}
@@ -125,6 +156,7 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays) {
         }
         for (std::size_t k = 0; k < 3; ++k) floats[(SAHL_RAY_WEIGHT + k) * count + i] = 1;
         ids[SAHL_RAY_EXCLUDE * count + i] = rays[i].exclude;
+        ids[SAHL_RAY_INSTANCE * count + i] = rays[i].exclude_instance;
     }
     return batch;
 }
@@ -133,12 +165,13 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, const std::
     Batch batch = upload(rays);
     const std::size_t count = batch.count;
     const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * count);
-    const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::write, count);
+    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::write, SAHL_HIT_UINTS * count);
     for (std::size_t i = 0; i < count; ++i) {
         floats[i] = hits[i].t;
         floats[count + i] = hits[i].u;
         floats[2 * count + i] = hits[i].v;
-        primitives[i] = hits[i].primitive;
+        hit_ids[SAHL_HIT_PRIMITIVE * count + i] = hits[i].primitive;
+        hit_ids[SAHL_HIT_INSTANCE * count + i] = hits[i].instance;
     }
     return batch;
 }
@@ -146,27 +179,29 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, const std::
 std::vector<TestHit> RayTracer::download(Batch& batch) {
     const std::size_t count = batch.count;
     const auto floats = batch.hits.map<float>(MapMode::read, SAHL_HIT_FLOATS * count);
-    const auto primitives = batch.primitives.map<std::uint32_t>(MapMode::read, count);
+    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::read, SAHL_HIT_UINTS * count);
     std::vector<TestHit> hits;
     hits.reserve(count);
     for (std::size_t i = 0; i < count; ++i)
-        hits.push_back({floats[i], floats[count + i], floats[2 * count + i], primitives[i]});
+        hits.push_back({floats[i], floats[count + i], floats[2 * count + i],
+                        hit_ids[SAHL_HIT_PRIMITIVE * count + i], hit_ids[SAHL_HIT_INSTANCE * count + i]});
     return hits;
 }
 
 std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
     runner_.run("intersect", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.constants, batch.rays, batch.ids, batch.hits, batch.primitives, batch.count);
+                scene.constants, batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.count);
     return download(batch);
 }
 
 std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
-    const std::vector<std::uint32_t> children = leaf_children(scene);
-    runner_.run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, runner_.upload(children),
-                static_cast<std::uint32_t>(children.size()), scene.constants.extent, batch.rays, batch.ids,
-                batch.hits, batch.primitives);
+    const Leaves leaves = all_leaves(scene);
+    runner_.run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, scene.instances,
+                runner_.upload(leaves.children), runner_.upload(leaves.instances),
+                static_cast<std::uint32_t>(leaves.children.size()), scene.constants.extent, batch.rays,
+                batch.ids, batch.hits, batch.hit_ids);
     return download(batch);
 }
 
@@ -174,8 +209,8 @@ std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std:
                                             float t_max) {
     Batch batch = upload(rays);
     runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.constants.extent, batch.rays, batch.ids, t_max, batch.primitives);
-    return KernelRunner::download<Occlusion>(batch.primitives, batch.count);
+                scene.constants.extent, batch.rays, batch.ids, t_max, batch.hit_ids);
+    return KernelRunner::download<Occlusion>(batch.hit_ids, batch.count);
 }
 
 std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vector<TestRay>& rays,
@@ -193,7 +228,7 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
     constexpr std::size_t kFloats = 19;
     Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
     runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, scene.instances, batch.rays,
-                batch.hits, batch.primitives, out);
+                batch.hits, batch.hit_ids, out);
     const std::vector<float> parts = KernelRunner::download<float>(out, kFloats * batch.count);
     std::vector<TestSurface> result;
     for (std::size_t i = 0; i < batch.count; ++i) {
@@ -217,10 +252,10 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
     // run() adds the count, which as shade's last parameter says: do spawn.
     runner_.run("shade", count, scene.primitives, scene.shape_data, scene.instances, scene.materials,
                 scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
-                batch.primitives, light, pixels, surfaces, brought, children, child_ids, outcomes,
-                batch.count, batch.count);
+                batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes, batch.count,
+                batch.count);
     runner_.run("shadow", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.primitives, scene.materials, scene.lights, scene.constants, batch.primitives, surfaces,
+                scene.primitives, scene.materials, scene.lights, scene.constants, batch.hit_ids, surfaces,
                 brought, outcomes, light, batch.count);
 
     const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * count);
@@ -235,7 +270,8 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
             ray.origin[k] = floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count];
             ray.direction[k] = floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count];
         }
-        ray.exclude = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_EXCLUDE) * count + i];
+        ray.exclude = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_EXCLUDE) * count + i] & SAHL_ID_MASK;
+        ray.exclude_instance = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_INSTANCE) * count + i];
         return ray;
     };
     std::vector<TestSpawn> result(count);

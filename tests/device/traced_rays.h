@@ -16,12 +16,14 @@ namespace sahl::tests {
 struct TestRay {
     glm::vec3 origin{0};
     glm::vec3 direction{0, 0, 1};
-    std::uint32_t exclude = SAHL_NO_PRIMITIVE;
+    std::uint32_t exclude = SAHL_NO_PRIMITIVE;  ///< the primitive it starts on,
+    std::uint32_t exclude_instance = 0;         ///< and its instance
 };
 
 struct TestHit {
     float t = 0, u = 0, v = 0;
     std::uint32_t primitive = SAHL_NO_PRIMITIVE;
+    std::uint32_t instance = 0;
 
     bool hit() const { return primitive != SAHL_NO_PRIMITIVE; }
     /// Bit for bit.
@@ -42,6 +44,7 @@ struct TestWalk {
     static constexpr std::uint32_t longest = 30;
     std::uint32_t count = 0;
     std::uint32_t primitives[longest] = {};
+    std::uint32_t instances[longest] = {};
     float t[longest] = {};
 };
 
@@ -82,7 +85,7 @@ public:
 
 private:
     struct Batch {
-        Buffer rays, ids, hits, primitives;
+        Buffer rays, ids, hits, hit_ids;
         std::uint32_t count;
     };
     Batch upload(const std::vector<TestRay>& rays);
