@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "tests/render/oracle_image.h"
 #include "tests/render/rendered.h"
 #include "tests/support/oracle/build_scene.h"
 
@@ -121,50 +122,6 @@ Scene random_scene(unsigned seed) {
         }
     }
     return scene;
-}
-
-struct Comparison {
-    int compared = 0;
-    int wrong = 0;
-    double mean = 0;
-};
-
-/// Away from edges every pixel agrees; at edges either side is right.
-Comparison compare(const Rendered& rendered, const oracle::Rendering& expected, double tolerance) {
-    Comparison result;
-    std::size_t pixel = 0;
-    for (int y = 0; y < expected.resolution.height; ++y) {
-        for (int x = 0; x < expected.resolution.width; ++x, ++pixel) {
-            if (expected.near_edge[pixel] != 0) continue;
-            ++result.compared;
-            const dvec3 difference = glm::abs(rendered.at(x, y) - expected.pixels[pixel]);
-            result.mean += (difference.x + difference.y + difference.z) / 3;
-            if (!close(rendered.at(x, y), expected.pixels[pixel], tolerance)) ++result.wrong;
-        }
-    }
-    result.mean /= result.compared;
-    return result;
-}
-
-/// Ray counts of every generation agree to `relative`, or to the number of `undecided` pixels.
-void check_counts(const RenderStatistics& statistics, const std::vector<oracle::Counts>& expected,
-                  double relative, double undecided) {
-    REQUIRE(statistics.generations.size() == expected.size());
-    for (std::size_t generation = 0; generation < expected.size(); ++generation) {
-        const auto allowed = [&](std::uint64_t count) {
-            return std::max(relative * static_cast<double>(count), undecided);
-        };
-        const GenerationCounts& found = statistics.generations[generation];
-        INFO("generation " << generation << ": " << found.rays << " rays, " << found.shadow_rays
-                           << " shadow rays; oracle " << expected[generation].rays << ", "
-                           << expected[generation].shadow_rays);
-        const auto distance = [](std::uint64_t a, std::uint64_t b) {
-            return static_cast<double>(a > b ? a - b : b - a);
-        };
-        CHECK(distance(found.rays, expected[generation].rays) <= allowed(expected[generation].rays));
-        CHECK(distance(found.shadow_rays, expected[generation].shadow_rays) <=
-              allowed(expected[generation].shadow_rays));
-    }
 }
 
 TEST_CASE("render: the still life is the oracle's, pixel by pixel", "[render][oracle]") {
