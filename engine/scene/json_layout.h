@@ -1,10 +1,13 @@
 // JSON text as a person would lay it out: what is short stands on one line.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "engine/scene/write_text.h"
 
 namespace sahl {
 
@@ -45,5 +48,20 @@ private:
 
 /// `text` in quotes, escaped.
 std::string json_string(std::string_view text);
+
+/// The shortest text that is read as the same number. JSON's -0 is a whole number, and 0 to most
+/// readers: negative zero is -0.0.
+template <class Number>
+std::string json_number(Number x) {
+    return x == 0 && std::signbit(x) ? "-0.0" : decimal(x);
+}
+
+/// "[x, y, z]" of a GLM vector.
+template <class Vector>
+std::string json_vector(const Vector& v) {
+    std::string text = "[";
+    for (int i = 0; i < v.length(); ++i) text += (i > 0 ? ", " : "") + json_number(v[i]);
+    return text + "]";
+}
 
 }  // namespace sahl

@@ -1,12 +1,9 @@
 #include "engine/scene/write_json.h"
 
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <set>
-#include <unordered_map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/json_layout.h"
 #include "engine/scene/validate.h"
+#include "engine/scene/write_json_mesh.h"
 #include "engine/scene/write_text.h"
 
 namespace sahl {
@@ -23,21 +21,8 @@ using Lines = JsonLayout::Lines;
 
 constexpr int largest_depth = 64;
 
-// JSON's -0 is a whole number, and 0 to most readers.
-template <class Number>
-std::string number(Number x) {
-    return x == 0 && std::signbit(x) ? "-0.0" : decimal(x);
-}
-
-template <class Vector>
-std::string vector(const Vector& v) {
-    std::string text = "[";
-    for (int i = 0; i < v.length(); ++i) text += (i > 0 ? ", " : "") + number(v[i]);
-    return text + "]";
-}
-
 // Grey is one number.
-std::string color(const glm::vec3& c) { return c == glm::vec3(c.r) ? number(c.r) : vector(c); }
+std::string color(const glm::vec3& c) { return c == glm::vec3(c.r) ? json_number(c.r) : json_vector(c); }
 
 std::string boolean(bool value) { return value ? "true" : "false"; }
 
@@ -61,17 +46,6 @@ private:
     std::set<std::string> taken_{};
 };
 
-// What a mesh's corner is: position, normal, uv, as bits.
-using Corner = std::array<std::uint32_t, 8>;
-
-struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-        std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by words
-        for (const std::uint32_t word : corner) hash = (hash ^ word) * 0x100000001b3;
-        return hash ^ (hash >> 32U);
-    }
-};
-
 class JsonWriter {
 public:
     explicit JsonWriter(const Scene& scene) : scene_(scene) {}
@@ -87,7 +61,6 @@ private:
     JsonLayout objects(std::uint32_t first, std::uint32_t count,
                        const std::vector<Instance>& instances) const;
     JsonLayout object(const Primitive& p) const;
-    std::uint32_t run_of_triangles(std::uint32_t first, std::uint32_t end) const;
     JsonLayout mesh(std::uint32_t first, std::uint32_t end) const;
     void add_transform(JsonLayout& object, std::uint32_t transform) const;
     void add_surface(JsonLayout& object, const Primitive& p) const;
@@ -130,10 +103,10 @@ JsonLayout JsonWriter::cameras() const {
         const Camera& camera = scene_.cameras[i];
         names.add(camera.name);
         JsonLayout one = JsonLayout::object();
-        one.add("eye", vector(camera.eye));
-        one.add("look_at", vector(camera.look_at));
-        one.add("up", vector(camera.up));
-        one.add("fov", number(camera.fov_y));
+        one.add("eye", json_vector(camera.eye));
+        one.add("look_at", json_vector(camera.look_at));
+        one.add("up", json_vector(camera.up));
+        one.add("fov", json_number(camera.fov_y));
         all.add(names[i], std::move(one));
     }
     return all;
@@ -154,18 +127,18 @@ JsonLayout JsonWriter::lights() const {
         one.add("type", json_string(directional ? "directional" : spot ? "spot" : "point"));
         if (directional) {
             // The way the light goes; a scene holds the way to it.
-            one.add("direction", vector(glm::dvec3(0) - light.position));
+            one.add("direction", json_vector(glm::dvec3(0) - light.position));
         } else {
-            one.add("position", vector(light.position));
+            one.add("position", json_vector(light.position));
         }
         if (spot) {
-            one.add("direction", vector(before_normalizing(light.direction)));
-            one.add("inner_angle", number(light.inner_angle));
-            one.add("outer_angle", number(light.outer_angle));
+            one.add("direction", json_vector(before_normalizing(light.direction)));
+            one.add("inner_angle", json_number(light.inner_angle));
+            one.add("outer_angle", json_number(light.outer_angle));
         }
         one.add("color", color(light.color));
         if (!directional && light.attenuation != glm::vec3(1, 0, 0))
-            one.add("attenuation", vector(light.attenuation));
+            one.add("attenuation", json_vector(light.attenuation));
         all.add("", std::move(one));
     }
     return all;
@@ -198,14 +171,14 @@ JsonLayout JsonWriter::material(const Material& m) const {
     add_color("ambient", m.ambient, m.textures.ambient);
     add_color("diffuse", m.diffuse, m.textures.diffuse);
     add_color("specular", m.specular, m.textures.specular);
-    if (m.shininess != 1) object.add("shininess", number(m.shininess));
+    if (m.shininess != 1) object.add("shininess", json_number(m.shininess));
     add_color("emission", m.emission, m.textures.emission);
     add_color("reflection", m.reflection, m.textures.reflection);
     if (m.reflection_attenuation != glm::vec3(1, 0, 0))
-        object.add("attenuation", vector(m.reflection_attenuation));
+        object.add("attenuation", json_vector(m.reflection_attenuation));
     add_color("transmission", m.transmission, no_texture);
-    if (m.ior != 1) object.add("ior", number(m.ior));
-    if (m.ior_outside != 1) object.add("ior_outside", number(m.ior_outside));
+    if (m.ior != 1) object.add("ior", json_number(m.ior));
+    if (m.ior_outside != 1) object.add("ior_outside", json_number(m.ior_outside));
     if (!m.two_sided) object.add("two_sided", boolean(false));
     return object;
 }
@@ -230,13 +203,13 @@ JsonLayout JsonWriter::texture(const Texture& t) const {
                json_string(t.space == TextureSpace::uv ? "uv" : "position"));
     object.add("colors", "[" + color(t.colors[0]) + ", " + color(t.colors[1]) + "]");
     if (checker) {
-        object.add("size", vector(t.extent));
-        if (t.origin != glm::dvec3(0)) object.add("offset", vector(t.origin));
+        object.add("size", json_vector(t.extent));
+        if (t.origin != glm::dvec3(0)) object.add("offset", json_vector(t.origin));
     } else {
         glm::dvec3 to;
         for (int i = 0; i < 3; ++i) to[i] = gradient_end(t.origin[i], t.extent[i]);
-        object.add("from", vector(t.origin));
-        object.add("to", vector(to));
+        object.add("from", json_vector(t.origin));
+        object.add("to", json_vector(to));
     }
     return object;
 }
@@ -255,7 +228,7 @@ JsonLayout JsonWriter::objects(std::uint32_t first, std::uint32_t count,
     JsonLayout all = JsonLayout::array(Lines::each);
     const std::uint32_t end = first + count;
     for (std::uint32_t i = first; i < end;) {
-        const std::uint32_t next = run_of_triangles(i, end);
+        const std::uint32_t next = mesh_end(scene_, i, end);
         all.add("", next > i ? mesh(i, next) : object(scene_.primitives[i]));
         i = std::max(next, i + 1);
     }
@@ -278,7 +251,7 @@ JsonLayout JsonWriter::object(const Primitive& p) const {
             const Polygon& polygon = scene_.polygons[p.index];
             JsonLayout vertices = JsonLayout::array(Lines::full);
             for (std::uint32_t i = 0; i < polygon.vertex_count; ++i)
-                vertices.add("", vector(scene_.polygon_vertices[polygon.first_vertex + i]));
+                vertices.add("", json_vector(scene_.polygon_vertices[polygon.first_vertex + i]));
             object.add("type", std::string("\"polygon\""));
             object.add("vertices", std::move(vertices));
             break;
@@ -286,21 +259,21 @@ JsonLayout JsonWriter::object(const Primitive& p) const {
         case PrimitiveKind::sphere: {
             const Sphere& sphere = scene_.spheres[p.index];
             object.add("type", std::string("\"sphere\""));
-            object.add("center", vector(sphere.center));
-            object.add("radius", number(sphere.radius));
+            object.add("center", json_vector(sphere.center));
+            object.add("radius", json_number(sphere.radius));
             break;
         }
         case PrimitiveKind::cone: {
             const Cone& cone = scene_.cones[p.index];
             const bool cylinder = cone.base_radius == cone.apex_radius;
             object.add("type", json_string(cylinder ? "cylinder" : "cone"));
-            object.add("base", vector(cone.base));
-            object.add("top", vector(cone.apex));
+            object.add("base", json_vector(cone.base));
+            object.add("top", json_vector(cone.apex));
             if (cylinder) {
-                object.add("radius", number(cone.base_radius));
+                object.add("radius", json_number(cone.base_radius));
             } else {
-                object.add("base_radius", number(cone.base_radius));
-                object.add("top_radius", number(cone.apex_radius));
+                object.add("base_radius", json_number(cone.base_radius));
+                object.add("top_radius", json_number(cone.apex_radius));
             }
             if (!cone.capped) object.add("capped", boolean(false));
             break;
@@ -308,16 +281,16 @@ JsonLayout JsonWriter::object(const Primitive& p) const {
         case PrimitiveKind::disc: {
             const Disc& disc = scene_.discs[p.index];
             object.add("type", std::string("\"disc\""));
-            object.add("center", vector(disc.center));
-            object.add("normal", vector(before_normalizing(disc.normal)));
-            object.add("radius", number(disc.radius));
+            object.add("center", json_vector(disc.center));
+            object.add("normal", json_vector(before_normalizing(disc.normal)));
+            object.add("radius", json_number(disc.radius));
             break;
         }
         case PrimitiveKind::box: {
             const Box& box = scene_.boxes[p.index];
             object.add("type", std::string("\"box\""));
-            object.add("min", vector(box.lo));
-            object.add("max", vector(box.hi));
+            object.add("min", json_vector(box.lo));
+            object.add("max", json_vector(box.hi));
             break;
         }
     }
@@ -325,58 +298,8 @@ JsonLayout JsonWriter::object(const Primitive& p) const {
     return object;
 }
 
-// The end of the triangles from `first` on that can be one mesh; `first` itself if it is none.
-std::uint32_t JsonWriter::run_of_triangles(std::uint32_t first, std::uint32_t end) const {
-    const Primitive& model = scene_.primitives[first];
-    std::uint32_t i = first;
-    for (; i < end; ++i) {
-        const Primitive& p = scene_.primitives[i];
-        if (p.kind != PrimitiveKind::triangle || p.material != model.material ||
-            p.transform != model.transform || p.sides != model.sides) {
-            break;
-        }
-        const Triangle& triangle = scene_.triangles[p.index];
-        const Triangle& first_triangle = scene_.triangles[model.index];
-        if (triangle.smooth != first_triangle.smooth || triangle.has_uv != first_triangle.has_uv) break;
-    }
-    return i;
-}
-
 JsonLayout JsonWriter::mesh(std::uint32_t first, std::uint32_t end) const {
-    const Triangle& model = scene_.triangles[scene_.primitives[first].index];
-    // A transform without an inverse, which a Sahl scene may not have: the renderer only needs the places.
-    const glm::dmat4& m = scene_.transforms[scene_.primitives[first].transform];
-    const bool bakes = !is_invertible(m);
-    JsonLayout vertices = JsonLayout::array(Lines::full);
-    JsonLayout normals = JsonLayout::array(Lines::full);
-    JsonLayout uvs = JsonLayout::array(Lines::full);
-    JsonLayout triangles = JsonLayout::array(Lines::full);
-    std::unordered_map<Corner, std::size_t, CornerHash> numbers;
-    for (std::uint32_t i = first; i < end; ++i) {
-        const Triangle& triangle = scene_.triangles[scene_.primitives[i].index];
-        std::size_t corners[3] = {};
-        for (int k = 0; k < 3; ++k) {
-            glm::vec3 position = scene_.vertices[triangle.vertices[k]];
-            if (bakes) position = glm::vec3(m * glm::dvec4(position, 1));
-            const glm::vec3 normal = model.smooth ? scene_.normals[triangle.normals[k]] : glm::vec3(0);
-            const glm::vec2 uv = model.has_uv ? scene_.uvs[triangle.uvs[k]] : glm::vec2(0);
-            const std::array<float, 8> values = {position.x, position.y, position.z, normal.x,
-                                                 normal.y,   normal.z,   uv.x,       uv.y};
-            const auto [found, is_new] = numbers.try_emplace(std::bit_cast<Corner>(values), numbers.size());
-            corners[k] = found->second;
-            if (!is_new) continue;
-            vertices.add("", vector(position));
-            if (model.smooth) normals.add("", vector(normal));
-            if (model.has_uv) uvs.add("", vector(uv));
-        }
-        triangles.add("", fmt::format("[{}, {}, {}]", corners[0], corners[1], corners[2]));
-    }
-    JsonLayout object = JsonLayout::object();
-    object.add("type", std::string("\"mesh\""));
-    object.add("vertices", std::move(vertices));
-    if (model.smooth) object.add("normals", std::move(normals));
-    if (model.has_uv) object.add("uv", std::move(uvs));
-    object.add("triangles", std::move(triangles));
+    JsonLayout object = mesh_layout(scene_, first, end);
     add_surface(object, scene_.primitives[first]);
     return object;
 }
@@ -386,7 +309,7 @@ void JsonWriter::add_transform(JsonLayout& object, std::uint32_t transform) cons
     if (m == glm::dmat4(1) || !is_invertible(m)) return;
     JsonLayout rows = JsonLayout::array();
     for (int row = 0; row < 4; ++row)
-        rows.add("", vector(glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row])));
+        rows.add("", json_vector(glm::dvec4(m[0][row], m[1][row], m[2][row], m[3][row])));
     JsonLayout step = JsonLayout::object();
     step.add("matrix", std::move(rows));
     object.add("transform", std::move(step));
