@@ -119,6 +119,46 @@ TEST_CASE("bounds contain the shapes") {
     }
 }
 
+TEST_CASE("discs, boxes and closed cones become unit shapes of their own spaces") {
+    const glm::dmat4 shear(1, 0.5, 0, 0, 0, 1, 0.25, 0, 0.1, 0, -1, 0, 5, -6, 7, 1);
+    Scene scene = one_of_each(shear);
+    scene.discs.push_back({{0.1, 0.2, 0.3}, {1, 2, 2}, 0.5});
+    scene.boxes.push_back({{-1, 2, 3}, {2, 4, 10}});
+    scene.cones[0].capped = true;
+    scene.primitives = {{PrimitiveKind::disc, 0, 0, 1},
+                        {PrimitiveKind::box, 0, 0, 1},
+                        {PrimitiveKind::cone, 0, 0, 1, Sides::front}};
+    const LoweredScene lowered = lower_scene(scene);
+    CHECK(lowered.primitives[0].kind == SAHL_KIND_DISC);
+    CHECK(lowered.primitives[1].kind == SAHL_KIND_BOX);
+    CHECK(lowered.primitives[2].kind == SAHL_KIND_SOLID_CONE);
+    CHECK((block_id(scene, 2) & SAHL_ID_FRONT_ONLY) != 0);
+    CHECK((block_id(scene, 1) & (SAHL_ID_FRONT_ONLY | SAHL_ID_BACK_ONLY)) == 0);
+    const auto in_own_space = [&](std::size_t primitive, const glm::dvec3& object_point) {
+        const std::uint32_t data = lowered.primitives[primitive].data;
+        const glm::dvec3 p = glm::dvec3(shear * glm::dvec4(object_point, 1)) - vector_at(lowered, data + 18);
+        return glm::dvec3(glm::dot(vector_at(lowered, data), p), glm::dot(vector_at(lowered, data + 6), p),
+                          glm::dot(vector_at(lowered, data + 12), p));
+    };
+    check_near(in_own_space(0, {0.1, 0.2, 0.3}), {0, 0, 0}, 1e-12);
+    const glm::dvec3 rim =
+        in_own_space(0, glm::dvec3(0.1, 0.2, 0.3) + 0.5 * glm::normalize(glm::dvec3(2, -1, 0)));
+    CHECK(rim.z == Approx(0).margin(1e-12));
+    CHECK(std::hypot(rim.x, rim.y) == Approx(1));
+    CHECK(in_own_space(0, {1.1, 2.2, 2.3}).z > 0);
+    check_near(in_own_space(1, {-1, 2, 3}), {-1, -1, -1}, 1e-12);
+    check_near(in_own_space(1, {2, 4, 10}), {1, 1, 1}, 1e-12);
+    const Bounds& bounds = lowered.build_primitives[1].bounds;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(shear *
+                           glm::dvec4(corner & 1 ? 2 : -1, corner & 2 ? 4 : 2, corner & 4 ? 10 : 3, 1));
+        for (int k = 0; k < 3; ++k) {
+            CHECK(double{bounds.lo[k]} <= p[k]);
+            CHECK(double{bounds.hi[k]} >= p[k]);
+        }
+    }
+}
+
 TEST_CASE("a primitive without a finite place is refused") {
     Scene scene = one_of_each(glm::dmat4(1));
     scene.transforms[1][3][0] = std::numeric_limits<double>::infinity();
