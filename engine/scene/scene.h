@@ -125,7 +125,8 @@ struct Sphere {
 };
 
 /// A cone, a truncated cone or (equal radii) a cylinder: its open side, or the solid. One radius may
-/// be 0. u is the angle about the axis, 0..1, v runs from base to apex.
+/// be 0. u is the angle about the axis, 0..1, from x × axis (y × axis where the axis is within 60° of x);
+/// v runs from base to apex.
 struct Cone {
     glm::dvec3 base{0};
     glm::dvec3 apex{0, 0, 1};
@@ -134,7 +135,7 @@ struct Cone {
     bool capped = false;
 };
 
-/// u is the angle about the normal, 0..1, v the distance from the centre over the radius.
+/// u is the angle about the normal as for cones, v the distance from the centre over the radius.
 struct Disc {
     glm::dvec3 center{0};
     glm::dvec3 normal{0, 0, 1};
