@@ -92,7 +92,7 @@ private:
     void check_whole() const;
     void write_head();
     void write_lights();
-    void check_material(const Material& m) const;
+    void check_material(std::uint32_t material) const;
     void use_material(std::uint32_t material);
     void use_transform(std::size_t id);
     void write_corners(std::size_t first);
@@ -125,8 +125,9 @@ std::string Cse167Writer::write() {
     for (std::size_t id = 0; id < scene_.primitives.size(); ++id) {
         const Primitive& p = scene_.primitives[id];
         if (p.kind != PrimitiveKind::triangle && p.kind != PrimitiveKind::sphere)
-            fail(fmt::format("has no shapes but triangles and spheres (object {})", id));
-        if (p.sides != Sides::both) fail(fmt::format("has no one-sided objects (object {})", id));
+            fail(fmt::format("has no shapes but triangles and spheres: {}", object_text(scene_, id)));
+        if (p.sides != Sides::both)
+            fail(fmt::format("has no one-sided objects: {}", object_text(scene_, id)));
         if (!can_be_hit(p)) continue;
         use_transform(id);
         use_material(p.material);
@@ -165,7 +166,7 @@ void Cse167Writer::write_lights() {
     std::optional<glm::vec3> attenuation;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& light = scene_.lights[i];
-        if (light.kind == LightKind::spot) fail(fmt::format("has no spot lights (light {})", i));
+        if (light.kind == LightKind::spot) fail(fmt::format("has no spot lights: light {}", i + 1));
         if (light.kind == LightKind::directional) {
             line("directional {} {}", decimals(light.position), decimals(light.color));
             continue;
@@ -173,15 +174,16 @@ void Cse167Writer::write_lights() {
         if (!attenuation && light.attenuation != glm::vec3(1, 0, 0))
             line("attenuation {}", decimals(light.attenuation));
         if (light.attenuation != attenuation.value_or(light.attenuation))
-            fail(fmt::format("has one attenuation for all point lights (light {})", i));
+            fail(fmt::format("has one attenuation for all point lights: light {}", i + 1));
         attenuation = light.attenuation;
         line("point {} {}", decimals(light.position), decimals(light.color));
     }
 }
 
-void Cse167Writer::check_material(const Material& m) const {
+void Cse167Writer::check_material(std::uint32_t material) const {
+    const Material& m = scene_.materials[material];
     const auto need = [&](bool holds, std::string_view lacks) {
-        if (!holds) fail(fmt::format("{} (material '{}')", lacks, m.name));
+        if (!holds) fail(fmt::format("{}: {}", lacks, material_text(scene_, material)));
     };
     need(m.ambient == glm::vec3(0) || scene_.ambient == glm::vec3(1), "has no ambient light but 1 1 1");
     need(m.specular == m.reflection,
@@ -202,7 +204,7 @@ void Cse167Writer::use_material(std::uint32_t material) {
     if (material_ == material) return;
     material_ = material;
     const Material& m = scene_.materials[material];
-    check_material(m);
+    check_material(material);
     line("ambient {}", decimals(m.ambient));
     line("diffuse {}", decimals(m.diffuse));
     line("specular {}", decimals(m.specular));
@@ -222,8 +224,8 @@ void Cse167Writer::use_transform(std::size_t id) {
     if (!linear) {
         fail(
             fmt::format("has only translate, rotate and scale, and no turn and scale were found that make "
-                        "the transform of object {}",
-                        id));
+                        "the transform of {}",
+                        object_text(scene_, id)));
     }
     line("pushTransform");
     indented_ = true;

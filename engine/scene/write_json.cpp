@@ -55,7 +55,7 @@ private:
     JsonLayout cameras() const;
     JsonLayout lights() const;
     JsonLayout materials() const;
-    JsonLayout material(const Material& m) const;
+    JsonLayout material(std::uint32_t index) const;
     JsonLayout texture(const Texture& t) const;
     JsonLayout groups() const;
     JsonLayout objects(std::uint32_t first, std::uint32_t count,
@@ -146,27 +146,26 @@ JsonLayout JsonWriter::lights() const {
 
 JsonLayout JsonWriter::materials() const {
     JsonLayout all = JsonLayout::object(Lines::each);
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-        all.add(material_names_[i], material(scene_.materials[i]));
+    for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) all.add(material_names_[i], material(i));
     return all;
 }
 
-JsonLayout JsonWriter::material(const Material& m) const {
+JsonLayout JsonWriter::material(std::uint32_t index) const {
+    const Material& m = scene_.materials[index];
     JsonLayout object = JsonLayout::object();
     if (m.specular_model == SpecularModel::blinn) object.add("model", std::string("\"blinn\""));
-    const auto add_color = [&](std::string_view key, const glm::vec3& c, std::uint32_t index) {
-        if (index == no_texture) {
+    const auto add_color = [&](std::string_view key, const glm::vec3& c, std::uint32_t texture_index) {
+        if (texture_index == no_texture) {
             if (c != glm::vec3(0)) object.add(key, color(c));
             return;
         }
         if (c != glm::vec3(1)) {
-            throw Error(
-                ExitCode::scene,
-                fmt::format("material '{}': its {} is a texture times a colour, which no scene format "
-                            "has; give the texture's own colours and make the material's 1",
-                            m.name, key));
+            throw Error(ExitCode::scene,
+                        fmt::format("{}: its {} is a texture times a colour, which no scene format "
+                                    "has; give the texture's own colours and make the material's 1",
+                                    material_text(scene_, index), key));
         }
-        object.add(key, texture(scene_.textures[index]));
+        object.add(key, texture(scene_.textures[texture_index]));
     };
     add_color("ambient", m.ambient, m.textures.ambient);
     add_color("diffuse", m.diffuse, m.textures.diffuse);

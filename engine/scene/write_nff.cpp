@@ -27,7 +27,7 @@ private:
     void check_whole() const;
     void write_head();
     void write_lights();
-    void write_fill(const Material& m);
+    void write_fill(std::uint32_t material);
     void use_material(std::uint32_t material);
     void write_object(std::size_t id);
     void write_cone(const Primitive& p, std::string_view id);
@@ -40,7 +40,7 @@ private:
 
     const Scene& scene_;
     std::string text_;
-    std::size_t fills_ = 0;       // materials that have their line
+    std::uint32_t fills_ = 0;     // materials that have their line
     std::int64_t material_ = -1;  // of the last line
 };
 
@@ -49,7 +49,7 @@ std::string NffWriter::write() {
     write_head();
     write_lights();
     for (std::size_t id = 0; id < scene_.primitives.size(); ++id) write_object(id);
-    while (fills_ < scene_.materials.size()) write_fill(scene_.materials[fills_++]);
+    while (fills_ < scene_.materials.size()) write_fill(fills_++);
     return std::move(text_);
 }
 
@@ -78,17 +78,18 @@ void NffWriter::write_lights() {
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& light = scene_.lights[i];
         if (light.kind == LightKind::directional)
-            fail(fmt::format("has no directional lights (light {})", i));
-        if (light.kind == LightKind::spot) fail(fmt::format("has no spot lights (light {})", i));
+            fail(fmt::format("has no directional lights: light {}", i + 1));
+        if (light.kind == LightKind::spot) fail(fmt::format("has no spot lights: light {}", i + 1));
         if (light.attenuation != glm::vec3(1, 0, 0))
-            fail(fmt::format("has no attenuation of light by distance (light {})", i));
+            fail(fmt::format("has no attenuation of light by distance: light {}", i + 1));
         line("l {} {}", decimals(light.position), decimals(light.color));
     }
 }
 
-void NffWriter::write_fill(const Material& m) {
+void NffWriter::write_fill(std::uint32_t material) {
+    const Material& m = scene_.materials[material];
     const auto need = [&](bool holds, std::string_view lacks) {
-        if (!holds) fail(fmt::format("{} (material '{}')", lacks, m.name));
+        if (!holds) fail(fmt::format("{}: {}", lacks, material_text(scene_, material)));
     };
     need(m.ambient == glm::vec3(0) || scene_.ambient == glm::vec3(0), "has no ambient light");
     need(m.emission == glm::vec3(0), "has no emission");
@@ -112,17 +113,17 @@ void NffWriter::write_fill(const Material& m) {
 void NffWriter::use_material(std::uint32_t material) {
     if (material == material_) return;
     material_ = material;
-    if (material < fills_) return write_fill(scene_.materials[material]);
-    while (fills_ <= material) write_fill(scene_.materials[fills_++]);
+    if (material < fills_) return write_fill(material);
+    while (fills_ <= material) write_fill(fills_++);
 }
 
 void NffWriter::write_object(std::size_t id) {
     const Primitive& p = scene_.primitives[id];
-    const std::string object = fmt::format("(object {})", id);
-    if (scene_.transforms[p.transform] != glm::dmat4(1)) fail(fmt::format("has no transforms {}", object));
+    const std::string object = object_text(scene_, id);
+    if (scene_.transforms[p.transform] != glm::dmat4(1)) fail(fmt::format("has no transforms: {}", object));
     const bool round = p.kind == PrimitiveKind::sphere || p.kind == PrimitiveKind::cone;
     if (p.sides == Sides::front || (p.sides == Sides::back && !round)) {
-        fail(fmt::format("has no one-sided objects but the insides of spheres and cones {}", object));
+        fail(fmt::format("has no one-sided objects but the insides of spheres and cones: {}", object));
     }
     use_material(p.material);
     switch (p.kind) {
@@ -131,7 +132,7 @@ void NffWriter::write_object(std::size_t id) {
         case PrimitiveKind::polygon: {
             const Polygon& polygon = scene_.polygons[p.index];
             if (polygon.vertex_count == 3)
-                fail(fmt::format("makes a polygon of three corners a triangle {}", object));
+                fail(fmt::format("makes a polygon of three corners a triangle: {}", object));
             line("p {}", polygon.vertex_count);
             for (std::uint32_t i = 0; i < polygon.vertex_count; ++i)
                 line("{}", decimals(scene_.polygon_vertices[polygon.first_vertex + i]));
@@ -145,15 +146,15 @@ void NffWriter::write_object(std::size_t id) {
         case PrimitiveKind::cone:
             return write_cone(p, object);
         case PrimitiveKind::disc:
-            fail(fmt::format("has no discs {}", object));
+            fail(fmt::format("has no discs: {}", object));
         case PrimitiveKind::box:
-            fail(fmt::format("has no boxes {}", object));
+            fail(fmt::format("has no boxes: {}", object));
     }
 }
 
 void NffWriter::write_cone(const Primitive& p, std::string_view id) {
     const Cone& cone = scene_.cones[p.index];
-    if (cone.capped) fail(fmt::format("has no capped cones and cylinders {}", id));
+    if (cone.capped) fail(fmt::format("has no capped cones and cylinders: {}", id));
     const double sign = p.sides == Sides::back ? -1 : 1;
     line("c");
     line("{} {}", decimals(cone.base), decimal(sign * cone.base_radius));

@@ -1,5 +1,7 @@
 #include "engine/scene/write_text.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -68,6 +70,26 @@ glm::dvec3 before_normalizing(glm::dvec3 unit) {
                 fmt::format("the direction {} has the length {:g}, and scene files only hold "
                             "directions of length 1; normalise it",
                             decimals(unit), glm::length(unit)));
+}
+
+std::string object_text(const Scene& scene, std::size_t primitive) {
+    const Primitive& p = scene.primitives[primitive];
+    constexpr std::array<std::string_view, 6> kinds = {"a triangle", "a polygon", "a sphere",
+                                                       "a cone",     "a disc",    "a box"};
+    std::string_view kind = kinds[static_cast<std::size_t>(p.kind)];
+    if (p.kind == PrimitiveKind::cone && scene.cones[p.index].base_radius == scene.cones[p.index].apex_radius)
+        kind = "a cylinder";
+    return fmt::format("object {} ({})", primitive + 1, kind);
+}
+
+std::string material_text(const Scene& scene, std::uint32_t material) {
+    if (!scene.materials[material].name.empty())
+        return fmt::format("material '{}'", scene.materials[material].name);
+    const auto& all = scene.primitives;
+    const auto user =
+        std::find_if(all.begin(), all.end(), [&](const Primitive& p) { return p.material == material; });
+    if (user == all.end()) return fmt::format("material {}, which nothing uses", material + 1);
+    return "the material of " + object_text(scene, static_cast<std::size_t>(user - all.begin()));
 }
 
 void cannot_express(std::string_view format, std::string_view lacks) {

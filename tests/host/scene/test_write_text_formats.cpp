@@ -141,11 +141,22 @@ TEST_CASE("What NFF cannot express is refused by its name", "[scene][write]") {
          [](Scene& s) {
              s.groups.push_back({"g", 1, 0, {}});
          }},
-        {"has no directional lights (light 0)", [](Scene& s) { s.lights[0].kind = LightKind::directional; }},
-        {"has no spot lights (light 0)", [](Scene& s) { s.lights[0].kind = LightKind::spot; }},
-        {"has no attenuation of light by distance (light 0)",
-         [](Scene& s) { s.lights[0].attenuation.z = 1; }},
-        {"has no ambient light (material 'fill1')", [](Scene& s) { s.materials[0].ambient.g = 1; }},
+        {"has no directional lights: light 1", [](Scene& s) { s.lights[0].kind = LightKind::directional; }},
+        {"has no spot lights: light 1", [](Scene& s) { s.lights[0].kind = LightKind::spot; }},
+        {"has no attenuation of light by distance: light 1", [](Scene& s) { s.lights[0].attenuation.z = 1; }},
+        {"has no ambient light: material 'fill1'", [](Scene& s) { s.materials[0].ambient.g = 1; }},
+        {"has no emission: the material of object 1 (a sphere)",
+         [](Scene& s) {
+             s.materials[0].emission.g = 1;
+             s.materials[0].name.clear();
+         }},
+        {"has no emission: material 2, which nothing uses",
+         [](Scene& s) { s.materials.emplace_back().emission.g = 1; }},
+        {"has no capped cones and cylinders: object 2 (a cylinder)",
+         [](Scene& s) {
+             s.cones.push_back({{0, 0, 0}, {0, 0, 1}, 1, 1, true});
+             s.primitives.push_back({PrimitiveKind::cone, 0});
+         }},
         {"has no emission", [](Scene& s) { s.materials[0].emission.g = 1; }},
         {"both have to be equal", [](Scene& s) { s.materials[0].specular = glm::vec3(1); }},
         {"has no coloured Ks",
@@ -161,19 +172,19 @@ TEST_CASE("What NFF cannot express is refused by its name", "[scene][write]") {
         {"has no index of refraction outside", [](Scene& s) { s.materials[0].ior_outside = 1.5F; }},
         {"has no attenuation of the reflected light",
          [](Scene& s) { s.materials[0].reflection_attenuation.y = 1; }},
-        {"has no textures (material 'fill1')", [](Scene& s) { s.materials[0].textures.diffuse = 0; }},
-        {"has no transforms (object 0)",
+        {"has no textures: material 'fill1'", [](Scene& s) { s.materials[0].textures.diffuse = 0; }},
+        {"has no transforms: object 1 (",
          [](Scene& s) { s.transforms[0] = glm::scale(glm::dmat4(1), glm::dvec3(2)); }},
-        {"has no one-sided objects but the insides of spheres and cones (object 0)",
+        {"has no one-sided objects but the insides of spheres and cones: object 1 (",
          [](Scene& s) { s.primitives[0].sides = Sides::front; }},
-        {"has no discs (object 0)", [](Scene& s) { s.primitives[0].kind = PrimitiveKind::disc; }},
-        {"has no boxes (object 0)", [](Scene& s) { s.primitives[0].kind = PrimitiveKind::box; }},
-        {"has no capped cones and cylinders (object 0)",
+        {"has no discs: object 1 (a disc)", [](Scene& s) { s.primitives[0].kind = PrimitiveKind::disc; }},
+        {"has no boxes: object 1 (a box)", [](Scene& s) { s.primitives[0].kind = PrimitiveKind::box; }},
+        {"has no capped cones and cylinders: object 1 (a cone)",
          [](Scene& s) {
              s.primitives[0].kind = PrimitiveKind::cone;
              s.cones.push_back({{0, 0, 0}, {0, 0, 1}, 1, 0, true});
          }},
-        {"makes a polygon of three corners a triangle (object 0)",
+        {"makes a polygon of three corners a triangle: object 1 (a polygon)",
          [](Scene& s) {
              s.primitives[0].kind = PrimitiveKind::polygon;
              s.polygons.push_back({0, 3});
@@ -206,10 +217,10 @@ TEST_CASE("What .test cannot express is refused by its name", "[scene][write]") 
          [](Scene& s) {
              s.groups.push_back({"g", 1, 0, {}});
          }},
-        {"has no spot lights (light 0)", [](Scene& s) { s.lights[0].kind = LightKind::spot; }},
-        {"has one attenuation for all point lights (light 1)",
+        {"has no spot lights: light 1", [](Scene& s) { s.lights[0].kind = LightKind::spot; }},
+        {"has one attenuation for all point lights: light 2",
          [](Scene& s) { s.lights.emplace_back().attenuation.z = 1; }},
-        {"has no ambient light but 1 1 1 (material 'material1')", [](Scene& s) { s.ambient.g = 0; }},
+        {"has no ambient light but 1 1 1: material 'material1'", [](Scene& s) { s.ambient.g = 0; }},
         {"both have to be equal", [](Scene& s) { s.materials[0].specular = glm::vec3(1); }},
         {"has no Phong highlights",
          [](Scene& s) {
@@ -221,10 +232,13 @@ TEST_CASE("What .test cannot express is refused by its name", "[scene][write]") 
         {"has no attenuation of the reflected light",
          [](Scene& s) { s.materials[0].reflection_attenuation.y = 1; }},
         {"has no textures", [](Scene& s) { s.materials[0].textures.emission = 0; }},
-        {"has no shapes but triangles and spheres (object 0)",
-         [](Scene& s) { s.primitives[0].kind = PrimitiveKind::cone; }},
-        {"has no one-sided objects (object 0)", [](Scene& s) { s.primitives[0].sides = Sides::back; }},
-        {"no turn and scale were found that make the transform of object 0",
+        {"has no shapes but triangles and spheres: object 1 (a ",
+         [](Scene& s) {
+             s.primitives[0].kind = PrimitiveKind::cone;
+             s.cones.emplace_back();
+         }},
+        {"has no one-sided objects: object 1 (", [](Scene& s) { s.primitives[0].sides = Sides::back; }},
+        {"no turn and scale were found that make the transform of object 1 (",
          [](Scene& s) {
              s.transforms.emplace_back(1);
              s.transforms[1][1][0] = 0.5;  // a shear
