@@ -21,11 +21,17 @@ constexpr int format_version = 1;
 constexpr int largest_depth = 64;
 
 void check_version(const JsonReader& reader, const JsonObject& file) {
-    const double version = reader.integer(file.at("sahl"), "sahl");
+    const JsonValue* value = file.find("sahl");
+    if (value == nullptr) {
+        reader.fail(file.value(), fmt::format("this scene has no 'sahl', the version of the format; add "
+                                              "\"sahl\": {}",
+                                              format_version));
+    }
+    const double version = reader.integer(*value, "sahl");
     if (version != format_version) {
-        reader.fail(file.at("sahl"), fmt::format("this file is of version {:g} of the format, this program "
-                                                 "reads version {}",
-                                                 version, format_version));
+        reader.fail(*value, fmt::format("this file is of version {} of the format, this program reads "
+                                        "version {}",
+                                        number_text(version), format_version));
     }
 }
 
@@ -42,6 +48,7 @@ void read_film(const JsonReader& reader, const JsonValue& value, Resolution& res
 
 void read_cameras(const JsonReader& reader, const JsonValue& value, std::vector<Camera>& cameras) {
     for (const JsonMember& member : reader.members(value, "cameras")) {
+        check_name(reader, member, "camera");
         const JsonObject object(reader, member.value, "camera", {"eye", "look_at"}, {"up", "fov"});
         Camera camera;
         camera.name = member.key;
@@ -60,6 +67,7 @@ void read_cameras(const JsonReader& reader, const JsonValue& value, std::vector<
 void read_groups(JsonSceneState& state, const JsonValue& value) {
     const std::span<const JsonMember> members = state.reader.members(value, "groups");
     for (const JsonMember& member : members) {
+        check_name(state.reader, member, "group");
         state.own_groups[member.key] = static_cast<std::uint32_t>(state.groups.size());
         state.groups.emplace_back();
         state.group_names.emplace_back(member.key);
@@ -90,9 +98,9 @@ void gather_primitives(JsonSceneState& state) {
 FileScene read_json_scene(const JsonDocument& document, const fs::path& path, SceneFiles& files,
                           const std::function<void(std::vector<Parameter>&)>& set) {
     const JsonReader plain(document, nullptr);
-    const JsonObject file(plain, document.root(), "scene", {"sahl"},
-                          {"$schema", "description", "parameters", "film", "depth", "background", "cameras",
-                           "lights", "materials", "groups", "objects"});
+    const JsonObject file(plain, document.root(), "scene", {},
+                          {"sahl", "$schema", "description", "parameters", "film", "depth", "background",
+                           "cameras", "lights", "materials", "groups", "objects"});
     check_version(plain, file);
     for (const std::string_view key : {"$schema", "description"}) {
         const JsonValue* text = file.find(key);

@@ -44,9 +44,11 @@ SceneFile find_scene_file(const JsonSceneState& state, const JsonValue& value, s
     const fs::path written = state.path.parent_path() / uri;
     file.shown = written.lexically_normal();
     std::error_code error;
-    file.real = fs::weakly_canonical(written, error);
+    // weakly_canonical() leaves a relative path to nothing relative.
+    const auto real = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path), error); };
+    file.real = real(written);
     // Behind a link to a folder, `..` leads elsewhere.
-    if (!error && fs::weakly_canonical(file.shown, error) != file.real) file.shown = written;
+    if (!error && real(file.shown) != file.real) file.shown = written;
     if (error) reader.fail(value, fmt::format("cannot read {}: {}", file.shown.string(), error.message()));
     if (!lies_in(file.real, state.files.root)) {
         reader.fail(value, fmt::format("{} lies outside the asset root {}; move the file into it, or name a "

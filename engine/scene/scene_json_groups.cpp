@@ -54,6 +54,39 @@ std::vector<std::uint32_t> order_groups(const JsonSceneState& state) {
     return order;
 }
 
+// Groups of groups multiply: counted before the renderer places them, and at the instance to change.
+void check_placements(const JsonSceneState& state, const std::vector<std::uint32_t>& order) {
+    std::vector<std::uint64_t> counts(state.groups.size());  // of the instances inside
+    std::vector<int> nesting(state.groups.size(), 1);
+    const auto count = [&](const Placed& placed) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < placed.instances.size(); ++i) {
+            const std::uint32_t group = placed.instances[i].group;
+            sum += 1 + counts[group];  // neither is above the limit
+            if (sum <= max_placed) continue;
+            state.reader.fail(*placed.instance_values[i],
+                              fmt::format("with this instance of the group {} more than {} groups are "
+                                          "placed, the most there can be; place fewer",
+                                          in_quotes(state.group_names[group]), max_placed));
+        }
+        return sum;
+    };
+    for (const std::uint32_t index : order) {
+        const Placed& group = state.groups[index];
+        for (std::size_t i = 0; i < group.instances.size(); ++i) {
+            nesting[index] = std::max(nesting[index], nesting[group.instances[i].group] + 1);
+            if (nesting[index] <= max_group_nesting) continue;
+            state.reader.fail(
+                *group.instance_values[i],
+                fmt::format("groups nest deeper than {} with this instance of the group {}; "
+                            "nest them less",
+                            max_group_nesting, in_quotes(state.group_names[group.instances[i].group])));
+        }
+        counts[index] = count(group);
+    }
+    count(state.world);
+}
+
 }  // namespace
 
 void check_groups(const JsonSceneState& state) {
@@ -69,7 +102,9 @@ void check_groups(const JsonSceneState& state) {
         }
         return extent;
     };
-    for (const std::uint32_t index : order_groups(state)) {
+    const std::vector<std::uint32_t> order = order_groups(state);
+    check_placements(state, order);
+    for (const std::uint32_t index : order) {
         const Placed& group = state.groups[index];
         for (const Primitive& p : group.primitives) {
             extents[index].add(extent_of(scene, p).transformed(scene.transforms[p.transform]));

@@ -40,9 +40,11 @@ void read_spot(JsonSceneState& state, const JsonValue& value) {
     light.kind = LightKind::spot;
     light.position = object.vector("position", {});
     light.direction = glm::normalize(object.direction("direction", {}));
-    light.outer_angle = object.number("outer_angle", 0, {0, 180});
-    if (light.outer_angle == 0) {
-        state.reader.fail(object.at("outer_angle"), "'outer_angle' must be greater than 0");
+    light.outer_angle = object.number("outer_angle", 0);
+    if (light.outer_angle <= 0 || light.outer_angle > 180) {
+        state.reader.fail(object.at("outer_angle"),
+                          fmt::format("'outer_angle' must be greater than 0 and at most 180, not {}",
+                                      number_text(light.outer_angle)));
     }
     light.inner_angle = object.number("inner_angle", light.outer_angle, {0, light.outer_angle});
     light.color = object.color("color", glm::dvec3(1));

@@ -129,6 +129,7 @@ std::uint32_t read_material(JsonSceneState& state, const JsonValue& value, std::
 
 void read_materials(JsonSceneState& state, const JsonValue& value) {
     for (const JsonMember& member : state.reader.members(value, "materials")) {
+        check_name(state.reader, member, "material");
         state.materials[member.key] = read_material(state, member.value, member.key);
     }
 }

@@ -141,7 +141,7 @@ void read_mesh(JsonSceneState& state, const JsonObject& object, const Surroundin
                 reader.fail(indices[k],
                             vertices.empty()
                                 ? std::string("there is no vertex to refer to; 'vertices' is empty")
-                                : fmt::format("there is no vertex {:g}; they are 0 to {}", index,
+                                : fmt::format("there is no vertex {}; they are 0 to {}", number_text(index),
                                               vertices.size() - 1));
             }
             corners[k] = static_cast<std::uint32_t>(index);

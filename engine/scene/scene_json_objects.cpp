@@ -69,8 +69,10 @@ void read_box(JsonSceneState& state, const JsonValue& value, const Surroundings&
     const Box box{object.vector("min", {}), object.vector("max", {})};
     for (int axis = 0; axis < 3; ++axis) {
         if (box.hi[axis] - box.lo[axis] < min_length) {
-            state.reader.fail(object.at("max"),
-                              fmt::format("the box's max {0} must be greater than its min {0}", "xyz"[axis]));
+            state.reader.fail(
+                object.at("max"),
+                fmt::format("the box's max {0} must be greater than its min {0} by at least {1:g}",
+                            "xyz"[axis], min_length));
         }
     }
     state.scene.boxes.push_back(box);

@@ -36,7 +36,20 @@ ParameterValue read_value(const JsonReader& reader, const Parameter& parameter, 
     return std::string(reader.text(value, what));
 }
 
+// [A-Za-z_][A-Za-z0-9_]*, whatever the locale.
+bool is_parameter_name(std::string_view name) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    return !name.empty() && letter(name[0]) &&
+           std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
 Parameter read_parameter(const JsonReader& reader, const JsonMember& member) {
+    if (!is_parameter_name(member.key)) {
+        throw SceneError(reader.document().place(member),
+                         fmt::format("{} cannot name a parameter; use letters, digits and _, and no digit "
+                                     "first",
+                                     in_quotes(member.key)));
+    }
     const JsonObject object(reader, member.value, "parameter", {"type", "default"},
                             {"min", "max", "description"});
     Parameter parameter;
@@ -127,9 +140,9 @@ std::string allowed_values(const Parameter& parameter) {
     std::string text(parameter_type_form(parameter.type));
     const bool low = range.low != any_number.low;
     const bool high = range.high != any_number.high;
-    if (low && high) text += fmt::format(" from {:g} to {:g}", range.low, range.high);
-    if (low && !high) text += fmt::format(" of at least {:g}", range.low);
-    if (high && !low) text += fmt::format(" of at most {:g}", range.high);
+    if (low && high) text += fmt::format(" from {} to {}", number_text(range.low), number_text(range.high));
+    if (low && !high) text += fmt::format(" of at least {}", number_text(range.low));
+    if (high && !low) text += fmt::format(" of at most {}", number_text(range.high));
     if (parameter.type == ParameterType::vector) text += ", such as 1,0,0";
     if (parameter.type == ParameterType::color) text += ", such as 1,0.5,0 or 0.5, nowhere negative";
     return text;
@@ -144,6 +157,7 @@ Parameter* find_parameter(std::vector<Parameter>& parameters, std::string_view n
 std::string no_parameter(const std::vector<Parameter>& parameters, std::string_view file,
                          std::string_view name) {
     const std::vector<std::string_view> names = parameter_names(parameters);
+    if (names.empty()) return fmt::format("{} has no parameters", file);
     return fmt::format("{} has no parameter {}{}", file, in_quotes(name),
                        suggest(name, "its parameters", names));
 }

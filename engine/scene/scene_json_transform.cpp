@@ -1,5 +1,6 @@
 #include "engine/scene/scene_json_transform.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -78,13 +79,27 @@ glm::dmat4 read_step(const JsonReader& reader, const JsonValue& value) {
                                             {"look_at", read_look_at},
                                             {"matrix", read_matrix}}};
     const std::span<const JsonMember> members = reader.members(value, "step of a transform");
-    for (const Step& step : steps) {
-        for (const JsonMember& member : members) {
-            if (member.key != step.name) continue;
-            const glm::dmat4 m = step.read(reader, value);
-            check_transform(m, reader.place(value));
-            return m;
+    const Step* found = nullptr;
+    for (const JsonMember& member : members) {
+        const auto* const step =
+            std::find_if(steps.begin(), steps.end(), [&](const Step& s) { return s.name == member.key; });
+        if (step == steps.end()) continue;
+        if (found != nullptr) {
+            throw SceneError(reader.document().place(member),
+                             fmt::format("one operation a step: write [{{\"{}\": …}}, {{\"{}\": …}}]",
+                                         found->name, step->name));
         }
+        found = step;
+    }
+    if (found != nullptr) {
+        const glm::dmat4 m = found->read(reader, value);
+        if (found->name == "matrix") {
+            check_transform(m, reader.place(value),
+                            "the first three columns of its matrix must not lie in one plane");
+        } else {
+            check_transform(m, reader.place(value));
+        }
+        return m;
     }
     constexpr std::array<std::string_view, 5> names = {"translate", "scale", "rotate", "look_at", "matrix"};
     if (members.empty()) reader.fail(value, "this step is empty" + suggest("", "steps", names));

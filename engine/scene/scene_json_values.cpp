@@ -39,7 +39,14 @@ std::string describe(const JsonDocument& document, const JsonValue& value) {
 std::string suggest(std::string_view name, std::string_view plural, std::span<const std::string_view> names) {
     const std::string hint = did_you_mean(name, names);
     if (!hint.empty()) return hint;
-    if (names.empty()) return fmt::format("; there are no {}", plural);
+    if (names.empty())
+        return plural.starts_with("its ") ? "; there are none" : fmt::format("; there are no {}", plural);
+    std::string longer;  // 'radius' is the end of 'base_radius'
+    for (const std::string_view known : names) {
+        if (name.empty() || !known.ends_with(fmt::format("_{}", name))) continue;
+        longer += fmt::format("{}'{}'", longer.empty() ? "" : " or ", known);
+    }
+    if (!longer.empty()) return fmt::format("; did you mean {}?", longer);
     constexpr std::size_t most = 24;
     const bool all = names.size() <= most;
     return fmt::format("; {} are {}{}", plural, join_names(names.first(std::min(most, names.size()))),
@@ -72,7 +79,8 @@ const Parameter* JsonReader::parameter(const JsonValue& value) const {
     if (found == parameters_->end()) {
         const std::vector<std::string_view> names = parameter_names(*parameters_);
         fail(value, fmt::format("there is no parameter {}{}", in_quotes(name),
-                                suggest(name, "parameters of this file", names)));
+                                names.empty() ? "; this file declares none"
+                                              : suggest(name, "parameters of this file", names)));
     }
     found->used = true;
     return &*found;
@@ -185,6 +193,16 @@ std::size_t JsonReader::choice(const JsonValue& value, std::string_view what, st
         fail(value, fmt::format("unknown {} {}{}", what, in_quotes(name), suggest(name, plural, names)));
     }
     return static_cast<std::size_t>(found - names.begin());
+}
+
+void check_name(const JsonReader& reader, const JsonMember& member, std::string_view noun) {
+    if (!member.key.empty() && !member.key.starts_with('$')) return;
+    throw SceneError(reader.document().place(member),
+                     member.key.empty()
+                         ? fmt::format("this {}'s name is empty; give it one", noun)
+                         : fmt::format("the name {} of a {} begins with $, as only parameters do where they "
+                                       "are used; give it another",
+                                       in_quotes(member.key), noun));
 }
 
 JsonObject::JsonObject(const JsonReader& reader, const JsonValue& value, std::string_view noun,

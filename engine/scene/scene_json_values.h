@@ -91,6 +91,10 @@ private:
     std::span<const JsonMember> members_;
 };
 
+/// Throws SceneError at the key unless it can name a `noun`: it is not empty and begins with no "$",
+/// which would make it a parameter's.
+void check_name(const JsonReader& reader, const JsonMember& member, std::string_view noun);
+
 /// "; did you mean 'sphere'?", or the names if none is near.
 std::string suggest(std::string_view name, std::string_view plural, std::span<const std::string_view> names);
 

@@ -13,14 +13,21 @@
 
 namespace sahl {
 
+std::string number_text(double x) {
+    const bool whole = std::floor(x) == x && std::abs(x) < max_magnitude;
+    return whole ? fmt::format("{:.0f}", x) : fmt::format("{:g}", x);
+}
+
 void check_range(double value, Range range, std::string_view what, const SourceLocation& where) {
     if (range.contains(value)) return;
     if (range.low == -range.high) {
-        throw SceneError(where, fmt::format("{} must lie within ±{:g}, not {:g}", what, range.high, value));
+        throw SceneError(where, fmt::format("{} must lie within ±{}, not {}", what, number_text(range.high),
+                                            number_text(value)));
     }
-    throw SceneError(where, fmt::format("{} must be {} {:g} and {} {:g}, not {:g}", what,
-                                        range.inclusive ? "at least" : "greater than", range.low,
-                                        range.inclusive ? "at most" : "less than", range.high, value));
+    throw SceneError(where, fmt::format("{} must be {} {} and {} {}, not {}", what,
+                                        range.inclusive ? "at least" : "greater than", number_text(range.low),
+                                        range.inclusive ? "at most" : "less than", number_text(range.high),
+                                        number_text(value)));
 }
 
 void check_camera(const Camera& camera, const SourceLocation& look_at, const SourceLocation& up) {
@@ -46,6 +53,13 @@ double frobenius_norm(const glm::dmat3& m) {
     return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
 }
 
+// Whether a transformed length is less than min_length, by more than rounding. The norm takes the shortest
+// axis for up to √3 of itself, and is exact where all are alike.
+bool shrinks_too_much(double length, const glm::dmat3& m) {
+    const double scale = std::sqrt(3.0) / frobenius_norm(glm::inverse(m));
+    return length * scale < min_length * (1 - 1e-9);
+}
+
 }  // namespace
 
 bool is_invertible(const glm::dmat4& m) {
@@ -62,7 +76,7 @@ void check_sphere_transform(const glm::dmat4& m, glm::dvec3 center, double radiu
             where, "the transformation flattens this sphere (it has no inverse); use no scale factor of 0");
     }
     const glm::dmat3 linear(m);
-    if (radius / frobenius_norm(glm::inverse(linear)) < min_length) {
+    if (shrinks_too_much(radius, linear)) {
         throw SceneError(where, fmt::format("the transformation shrinks this sphere below {:g}", min_length));
     }
     const glm::dvec3 world = glm::dvec3(m * glm::dvec4(center, 1));
@@ -74,16 +88,16 @@ void check_sphere_transform(const glm::dmat4& m, glm::dvec3 center, double radiu
     }
 }
 
-void check_transform(const glm::dmat4& m, const SourceLocation& where) {
+void check_transform(const glm::dmat4& m, const SourceLocation& where, std::string_view advice) {
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 3; ++row) {
             check_range(m[column][row], any_number, "every element of the transformation", where);
         }
     }
     if (!is_invertible(m)) {
-        throw SceneError(where,
-                         "this transformation flattens what it is applied to (it has no inverse); use no "
-                         "scale factor of 0");
+        throw SceneError(where, fmt::format("this transformation flattens what it is applied to (it has no "
+                                            "inverse); {}",
+                                            advice));
     }
 }
 
@@ -191,13 +205,21 @@ void check_placed(const Scene& scene, const Primitive& primitive, const glm::dma
                                                        "cone",     "disc",    "box"};
     const std::string_view name = names[static_cast<std::size_t>(primitive.kind)];
     const double length = least_length(scene, primitive);
-    if (length > 0 && length / frobenius_norm(glm::inverse(glm::dmat3(m))) < min_length) {
+    if (length > 0 && shrinks_too_much(length, glm::dmat3(m))) {
         throw SceneError(where,
                          fmt::format("the transformation shrinks this {} below {:g}", name, min_length));
     }
-    if (!extent_of(scene, primitive).transformed(m).within(max_magnitude)) {
+    const Extent extent = extent_of(scene, primitive).transformed(m);
+    if (!extent.within(max_magnitude)) {
         throw SceneError(where, fmt::format("this {} reaches beyond ±{:g}, where its transformation takes it",
                                             name, max_magnitude));
+    }
+    for (int axis = 0; axis < 3 && length > 0; ++axis) {
+        if (static_cast<float>(extent.lo[axis]) != static_cast<float>(extent.hi[axis])) continue;
+        throw SceneError(where, fmt::format("this {} is too thin for its place: along {} it begins and ends "
+                                            "at the same number of single precision, {:g}; make it larger "
+                                            "or move it nearer to the origin",
+                                            name, "xyz"[axis], extent.lo[axis]));
     }
 }
 

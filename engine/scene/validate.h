@@ -1,7 +1,9 @@
 // What no scene may hold, whatever its format: the loaders call these at the place of the value.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include <glm/mat4x4.hpp>
@@ -19,6 +21,11 @@ constexpr double max_magnitude = 1e15;
 /// Lengths that must not vanish (radii, distances) are at least this: their squares and inverses are
 /// normal floats.
 constexpr double min_length = 1e-15;
+
+/// The most instances that a scene places, those inside placed groups included, and the most groups
+/// inside each other: what the renderer numbers and walks.
+constexpr std::uint64_t max_placed = 0x07ffffff;
+constexpr int max_group_nesting = 64;
 
 /// Largest width and height of an image in pixels.
 constexpr int max_resolution = 65536;
@@ -39,6 +46,9 @@ constexpr Range not_negative{0, max_magnitude};
 constexpr Range positive_length{min_length, max_magnitude};
 constexpr Range field_of_view{0, 180, false};  ///< degrees
 
+/// A number for a message: whole ones with all their digits, others with six.
+std::string number_text(double x);
+
 /// Throws SceneError "`what` must be …" unless `value` is finite and in `range`.
 void check_range(double value, Range range, std::string_view what, const SourceLocation& where);
 
@@ -56,7 +66,11 @@ void check_sphere_transform(const glm::dmat4& m, glm::dvec3 center, double radiu
                             const SourceLocation& where);
 
 /// Throws SceneError unless `m` is affine, can be inverted and has no element beyond ±max_magnitude.
-void check_transform(const glm::dmat4& m, const SourceLocation& where);
+/// `advice` says what to do about one without an inverse.
+void check_transform(const glm::dmat4& m, const SourceLocation& where,
+                     std::string_view advice =
+                         "use no scale factor of 0, and none that is less than 1e-12 "
+                         "of another");
 
 /// An axis-aligned box; empty while lo > hi.
 struct Extent {
@@ -75,7 +89,8 @@ struct Extent {
 Extent extent_of(const Scene& scene, const Primitive& primitive);
 
 /// Throws SceneError unless `m`, whose inverse exists, leaves the primitive (its own transform does
-/// not count) inside ±max_magnitude, and a solid no smaller than min_length.
+/// not count) inside ±max_magnitude, a solid no smaller than min_length, and in single
+/// precision no less than a unit in the last place thick along each axis.
 void check_placed(const Scene& scene, const Primitive& primitive, const glm::dmat4& m,
                   const SourceLocation& where);
 

@@ -231,9 +231,9 @@ TEST_CASE("A Sahl scene: transforms", "[scene][json]") {
 
 TEST_CASE("A single matrix reaches the scene to the bit", "[scene][json]") {
     const Scene scene = parse_json(
-        R"({"type": "sphere", "transform": {"matrix": [[0.1, -0.0, 1e-300, 1.1],
+        R"({"type": "sphere", "radius": 100, "transform": {"matrix": [[0.1, -0.0, 1e-300, 1.1],
             [0, 0.30000000000000004, 0, 123456789.12345679], [0, 0, 0.7, 5e-324], [0, 0, 0, 1]]}},
-           {"type": "sphere", "transform": {"matrix": [[0.1, 0.0, 1e-300, 1.1],
+           {"type": "sphere", "radius": 100, "transform": {"matrix": [[0.1, 0.0, 1e-300, 1.1],
             [0, 0.30000000000000004, 0, 123456789.12345679], [0, 0, 0.7, 5e-324], [0, 0, 0, 1]]}},
            {"type": "sphere", "transform": {"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}})");
     REQUIRE(scene.transforms.size() == 3);
@@ -296,7 +296,7 @@ TEST_CASE("A material named default is what objects without one have", "[scene][
 
 TEST_CASE("Millions of instances by nesting stay a few", "[scene][json]") {
     std::string groups = R"("g0": [{"type": "sphere"}])";
-    for (int level = 1; level < 40; ++level) {
+    for (int level = 1; level < 9; ++level) {
         groups += ", \"g" + std::to_string(level) + "\": [";
         for (int i = 0; i < 10; ++i) {
             groups += (i == 0 ? "" : ", ") + std::string(R"({"type": "instance", "group": "g)") +
@@ -307,9 +307,9 @@ TEST_CASE("Millions of instances by nesting stay a few", "[scene][json]") {
     const Scene scene = read_scene_json(
         "scene.json",
         R"({"sahl": 1, "cameras": {"c": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}}, "groups": {)" + groups +
-            "}, \"objects\": [{\"type\": \"instance\", \"group\": \"g39\"}]}");
-    CHECK(scene.groups.size() == 40);
-    CHECK(scene.groups[39].instances.size() == 10);
+            "}, \"objects\": [{\"type\": \"instance\", \"group\": \"g8\"}]}");
+    CHECK(scene.groups.size() == 9);
+    CHECK(scene.groups[8].instances.size() == 10);
 }
 
 TEST_CASE("A Sahl scene with Windows line ends and a byte order mark is the same", "[scene][json]") {

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/scene/validate.h"
+#include "kernels/device_types.h"
 #include "tests/host/scene/parse.h"
 
 namespace sahl::tests {
@@ -42,16 +44,70 @@ void check_objects(const std::vector<Case>& cases) {
     check_cases(cases, [](const std::string& text) { return parse_json(text); });
 }
 
+// g0 holds what `first` says, each further group `each` instances of the one before; one object places the
+// last.
+std::string nested_groups(int count, const std::string& first, int each) {
+    std::string text = R"("groups": {"g0": [)" + first + "]";
+    for (int i = 1; i < count; ++i) {
+        text += ", \"g" + std::to_string(i) + "\": [\n";
+        for (int k = 0; k < each; ++k) {
+            text += (k > 0 ? ",\n" : "") + std::string(R"({"type": "instance", "group": "g)") +
+                    std::to_string(i - 1) + "\"}";
+        }
+        text += "]";
+    }
+    return text +
+           R"(}, "cameras": {"main": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}}, "objects": [)"
+           "\n" +
+           R"({"type": "instance", "group": "g)" + std::to_string(count - 1) + "\"}]";
+}
+
+Scene parse_file(const std::string& members) {
+    return read_scene_json("scene.json", R"({"sahl": 1, )" + members + "}");
+}
+
 }  // namespace
+
+TEST_CASE("Sahl scenes: as many groups are placed as the renderer can number", "[scene][json]") {
+    STATIC_REQUIRE(max_placed == SAHL_CHILD_OFFSET_MASK);
+    const std::string sphere = R"({"type": "sphere"})";
+    // Groups of two: g26 holds 2^27 - 2, which with itself is the limit of 2^27 - 1.
+    CHECK(parse_file(nested_groups(27, sphere, 2)).groups.size() == 27);
+    // The second instance in g27 is one too many, whatever comes above it.
+    const std::string says = "with this instance of the group 'g26' more than 134217727 groups are placed";
+    check_file({{nested_groups(28, sphere, 2), "55:1", says}, {nested_groups(40, sphere, 2), "55:1", says}});
+    // In the world: one more beside the full tree.
+    std::string beside = nested_groups(27, sphere, 2);
+    beside.insert(beside.size() - 1, ",\n{\"type\": \"instance\", \"group\": \"g0\"}");
+    check_file({{beside, "55:1", "with this instance of the group 'g0' more than 134217727 groups"}});
+}
+
+TEST_CASE("Sahl scenes: groups nest 64 deep", "[scene][json]") {
+    CHECK(parse_file(nested_groups(64, "", 1)).groups.size() == 64);
+    const std::string says =
+        "groups nest deeper than 64 with this instance of the group 'g63'; nest them less";
+    check_file({{nested_groups(65, "", 1), "65:1", says}, {nested_groups(3000, "", 1), "65:1", says}});
+}
+
+TEST_CASE("Sahl scenes: the least lengths are allowed", "[scene][json]") {
+    CHECK_NOTHROW(parse_json(R"({"type": "sphere", "radius": 1e-15})"));
+    CHECK_NOTHROW(parse_json(R"({"type": "sphere", "radius": 1, "transform": {"scale": 1e-15}})"));
+    CHECK_NOTHROW(parse_json(R"({"type": "box", "min": [0, 0, 0], "max": [1, 1, 1e-15]})"));
+    // Thin, but not where single precision is coarse.
+    CHECK_NOTHROW(parse_json(R"({"type": "box", "min": [1e6, 0, 0], "max": [1000001, 1, 1e-6]})"));
+    CHECK_NOTHROW(parse_json(R"({"type": "box", "min": [1e6, 0, 0], "max": [1000000.01, 1, 1],
+        "transform": {"translate": [-1e6, 0, 0]}})"));
+}
 
 TEST_CASE("Sahl scenes: errors of the file", "[scene][json]") {
     check_cases(
         {{"[]", "1:1", "scene: expected an object, found an array of 0 values"},
-         {"{}", "1:1", "this scene has no 'sahl'; add it"},
+         {"{}", "1:1", "this scene has no 'sahl', the version of the format; add \"sahl\": 1"},
          {"{\"sahl\": 2}", "1:10", "this file is of version 2 of the format, this program reads version 1"},
          {"{\"sahl\": \"1\"}", "1:10", "sahl: expected an integer, found the string '1'"},
          {"{\"sahl\": 1}", "1:1", "the scene has no camera; add \"cameras\""},
          {"{\"sahl\": 1, \"cameras\": {}}", "1:1", "the scene has no camera"},
+         {"{\"sahl\": 4294967296}", "1:10", "this file is of version 4294967296 of the format"},
          {"{\"sahl\": 1.5}", "1:10", "sahl: expected an integer, found the number 1.5"}},
         [](const std::string& text) { return read_scene_json("scene.json", text); });
     check_file({
@@ -91,6 +147,10 @@ TEST_CASE("Sahl scenes: errors of the file", "[scene][json]") {
          "the camera's up vector is parallel"},
         {R"("cameras": {"a": {"eye": [0, 0, 1], "look_at": [0, 0, 0], "fov": 180}})", "1:78",
          "'fov' must be greater than 0 and less than 180, not 180"},
+        {R"("cameras": {"": {}})", "1:25", "this camera's name is empty; give it one"},
+        {R"("cameras": {"$a": {}})", "1:25", "the name '$a' of a camera begins with $"},
+        {R"("groups": {"": []})", "1:24", "this group's name is empty"},
+        {R"("groups": {"$a": []})", "1:24", "the name '$a' of a group begins with $"},
         {R"("groups": [])", "1:23", "groups: expected an object"},
         {R"("groups": {"a": {}})", "1:29", "objects: expected an array of objects, found an object"},
         {R"("groups": {"a": [{"type": "instance", "group": "a"}]})", "1:30",
@@ -132,9 +192,9 @@ TEST_CASE("Sahl scenes: errors of lights", "[scene][json]") {
             {R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1]})", "2:1",
              "this spot light has no 'outer_angle'"},
             {R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "outer_angle": 0})", "2:80",
-             "'outer_angle' must be greater than 0"},
+             "'outer_angle' must be greater than 0 and at most 180, not 0"},
             {R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "outer_angle": 181})", "2:80",
-             "'outer_angle' must be at least 0 and at most 180, not 181"},
+             "'outer_angle' must be greater than 0 and at most 180, not 181"},
             {R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "outer_angle": 9, "inner_angle": 10})",
              "2:98", "'inner_angle' must be at least 0 and at most 9, not 10"},
             {R"({"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 0], "outer_angle": 9})", "2:54",
@@ -193,6 +253,8 @@ TEST_CASE("Sahl scenes: errors of materials", "[scene][json]") {
          "material: expected a material's name or a material (an object), found the number 5"},
         {R"({"type": "sphere", "material": {"diffus": 5}})", "2:33", "unknown key 'diffus' of a material"},
     });
+    check_file({{R"("materials": {"": {}})", "1:27", "this material's name is empty"},
+                {R"("materials": {"$a": {}})", "1:27", "the name '$a' of a material begins with $"}});
     check_file({{R"("materials": {"green": {}}, "objects": [{"type": "sphere", "material": "gren"}])", "1:84",
                  "there is no material 'gren'; did you mean 'green'?"}});
 }
@@ -215,7 +277,17 @@ TEST_CASE("Sahl scenes: errors of objects", "[scene][json]") {
          "the transformation shrinks this sphere below 1e-15"},
         {R"({"type": "box", "min": [0, 0, 0]})", "2:1", "this box has no 'max'; add it"},
         {R"({"type": "box", "min": [0, 0, 0], "max": [1, 0, 1]})", "2:42",
-         "the box's max y must be greater than its min y"},
+         "the box's max y must be greater than its min y by at least 1e-15"},
+        {R"({"type": "box", "min": [0, 0, 0], "max": [1, 1e-20, 1]})", "2:42",
+         "the box's max y must be greater than its min y by at least 1e-15"},
+        {R"({"type": "box", "min": [1e6, 0, 0], "max": [1000000.0000000001, 1, 1]})", "2:1",
+         "this box is too thin for its place: along x it begins and ends at the same number of single "
+         "precision, "
+         "1e+06"},
+        {R"({"type": "sphere", "center": [0, 0, 1e9]})", "2:1",
+         "this sphere is too thin for its place: along z"},
+        {R"({"type": "disc", "transform": {"translate": [0, -1e9, 0]}})", "2:1",
+         "this disc is too thin for its place: along y"},
         {R"({"type": "box", "min": [0, 0, 2], "max": [1, 1, 1]})", "2:42", "the box's max z must be greater"},
         {R"({"type": "disc", "normal": [0, 0, 0]})", "2:28", "'normal' is zero; give it a direction"},
         {R"({"type": "disc", "radius": -1})", "2:28", "'radius' must be at least"},
@@ -233,6 +305,8 @@ TEST_CASE("Sahl scenes: errors of objects", "[scene][json]") {
          "'top_radius' must be at least 1e-15"},
         {R"({"type": "cone", "base": [0, 0, 0], "top": [1, 0, 0], "base_radius": -1})", "2:70",
          "'base_radius' must be at least 0"},
+        {R"({"type": "cone", "base": [0, 0, 0], "top": [1, 0, 0], "radius": 1})", "2:55",
+         "unknown key 'radius' of a cone; did you mean 'base_radius' or 'top_radius'?"},
         {R"({"type": "group"})", "2:1", "this group has no 'objects'"},
         {R"({"type": "group", "objects": [{"type": "sphere", "radius": 0}]})", "2:60",
          "'radius' must be at least"},
@@ -278,6 +352,7 @@ TEST_CASE("Sahl scenes: errors of polygons and meshes", "[scene][json]") {
         {R"({"type": "polygon", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1e14, 0]], "transform": {"scale": 100}})",
          "2:56", "the transformed vertex must lie within ±1e+15"},
         {mesh + "[[0, 1, 3]]}", "2:86", "there is no vertex 3; they are 0 to 2"},
+        {mesh + "[[0, 1, 4294967296]]}", "2:86", "there is no vertex 4294967296; they are 0 to 2"},
         {mesh + "[[0, -1, 2]]}", "2:83", "there is no vertex -1; they are 0 to 2"},
         {mesh + "[[0, 1.5, 2]]}", "2:83", "triangles: expected an integer, found the number 1.5"},
         {mesh + "[[0, 1]]}", "2:79",
@@ -302,9 +377,15 @@ TEST_CASE("Sahl scenes: errors of transforms", "[scene][json]") {
             {R"([5])", "2:2", "step of a transform: expected an object"},
             {R"({})", "2:1", "this step is empty; steps are translate, scale, rotate, look_at, matrix"},
             {R"({"tanslate": [1, 0, 0]})", "2:2", "unknown step 'tanslate'; did you mean 'translate'?"},
-            {R"({"translate": [1, 0, 0], "scale": 2})", "2:26", "unknown key 'scale' of a translate step"},
+            {R"({"translate": [1, 0, 0], "scale": 2})", "2:26",
+             "one operation a step: write [{\"translate\": …}, {\"scale\": …}]"},
+            {R"({"scale": 2, "axis": [1, 0, 0]})", "2:14", "unknown key 'axis' of a scale step"},
+            {R"({"scale": 2, "rotate": 5, "axis": [1, 0, 0]})", "2:14",
+             "one operation a step: write [{\"scale\": …}, {\"rotate\": …}]"},
             {R"({"translate": 1})", "2:15", "translate: expected a vector"},
-            {R"({"scale": 0})", "2:1", "this transformation flattens what it is applied to"},
+            {R"({"scale": 0})", "2:1",
+             "this transformation flattens what it is applied to (it has no inverse); use no scale factor of "
+             "0"},
             {R"([{"scale": 2}, {"scale": [1, 0, 1]}])", "2:16", "this transformation flattens"},
             {R"([{"scale": 1e10}, {"scale": 1e10}])", "2:1",
              "every element of the transformation must lie within"},
@@ -326,7 +407,7 @@ TEST_CASE("Sahl scenes: errors of transforms", "[scene][json]") {
             {R"({"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 2]]})", "2:55",
              "the last row of the matrix must be 0 0 0 1"},
             {R"({"matrix": [[1, 0, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})", "2:1",
-             "this transformation flattens"},
+             "(it has no inverse); the first three columns of its matrix must not lie in one plane"},
         },
         [](const std::string& text) {
             return read_scene_json(
@@ -343,6 +424,11 @@ TEST_CASE("Sahl scenes: errors of transforms", "[scene][json]") {
 TEST_CASE("Sahl scenes: errors of parameters", "[scene][json]") {
     check_file({
         {R"("parameters": [])", "1:27", "parameters: expected an object"},
+        {R"("parameters": {"": {}})", "1:28", "'' cannot name a parameter; use letters, digits and _"},
+        {R"("parameters": {"1a": {}})", "1:28", "'1a' cannot name a parameter"},
+        {R"("parameters": {"a-b": {}})", "1:28", "'a-b' cannot name a parameter"},
+        {R"("parameters": {"$a": {}})", "1:28", "'$a' cannot name a parameter"},
+        {R"("parameters": {"ä": {}})", "1:28", "cannot name a parameter"},
         {R"("parameters": {"a": {"type": "number"}})", "1:33", "this parameter has no 'default'; add it"},
         {R"("parameters": {"a": {"default": 1}})", "1:33", "this parameter has no 'type'"},
         {R"("parameters": {"a": {"type": "nubmer", "default": 1}})", "1:42",
@@ -369,7 +455,7 @@ TEST_CASE("Sahl scenes: errors of parameters", "[scene][json]") {
          "the parameter 'a' is never used; write \"$a\" where its value belongs, or remove it"},
         {R"("depth": "$depht", "parameters": {"depth": {"type": "integer", "default": 1}})", "1:22",
          "there is no parameter 'depht'; did you mean 'depth'?"},
-        {R"("depth": "$d")", "1:22", "there is no parameter 'd'; there are no parameters of this file"},
+        {R"("depth": "$d")", "1:22", "there is no parameter 'd'; this file declares none"},
         {R"("depth": "$d", "parameters": {"d": {"type": "number", "default": 1}})", "1:22",
          "depth: expected an integer, found the parameter 'd', which is a number"},
         {R"("background": "$d", "parameters": {"d": {"type": "vector", "default": [1, 1, 1]}})", "1:27",

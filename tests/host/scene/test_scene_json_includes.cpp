@@ -292,6 +292,14 @@ TEST_CASE("Includes nest, each file from its own folder", "[scene][json]") {
 TEST_CASE("Errors of includes", "[scene][json]") {
     const Scenes scenes;
     scenes.check_error(include("b.nff"), "top.json:2:28", "there is no file ");
+    scenes.check_error(
+        include("a.nff", R"("materials": {"x": {}})") + "," + include("a.test", R"("materials": {"x": {}})"),
+        "top.json:2:51", "the included scene has no material 'x'; its materials are fill1");
+    scenes.write("plain.json", R"({"sahl": 1})");
+    scenes.check_error(include("plain.json", R"("materials": {"x": {}})"), "top.json:2:56",
+                       "the included scene has no material 'x'; there are none");
+    scenes.check_error(include("plain.json", R"("set": {"x": 1})"), "top.json:2:50",
+                       "plain.json has no parameters");
     scenes.check_error(include(""), "top.json:2:28", "the uri is empty");
     scenes.check_error(include("/etc/a.nff"), "top.json:2:28", "'/etc/a.nff' is no relative path");
     scenes.check_error(include("http://a/b.nff"), "top.json:2:28", "without a scheme such as http:");
@@ -404,8 +412,33 @@ TEST_CASE("A scene is found from any working directory", "[scene][json]") {
     const fs::path before = fs::current_path();
     fs::current_path(scenes.folder().path());
     const std::size_t count = load_scene("top.json").primitives.size();
+    const auto refusal = [&](const std::string& scene, const std::string& uri) -> std::string {
+        scenes.write("top.json", json_head + include(uri) + "]}");
+        try {
+            load_scene(scene);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    std::vector<std::pair<std::string, std::string>> seen;  // what was said, what should be
+    for (const std::string scene : {"top.json", "./top.json"}) {
+        const std::string place = scene + ":2:28: ";
+        for (const std::string uri : {"nope.nff", "./nope.nff", "inner/../nope.nff", "no/where.nff"})
+            seen.emplace_back(refusal(scene, uri), place + "there is no file ");
+        for (const std::string uri : {"../nope.nff", "inner/../../nope.nff", "no/../../nope.nff"})
+            seen.emplace_back(refusal(scene, uri), place + "../nope.nff lies outside the asset root ");
+    }
+    // A link to nothing is no file; behind a link, `..` is the folder above the link's target.
+    fs::create_symlink("nothing.nff", scenes.folder() / "dangling.nff");
+    fs::create_directories(scenes.folder() / "far/below");
+    fs::create_directory_symlink("far/below", scenes.folder() / "away");
+    seen.emplace_back(refusal("top.json", "dangling.nff"), "top.json:2:28: there is no file dangling.nff");
+    seen.emplace_back(refusal("top.json", "away/../nope.nff"),
+                      "top.json:2:28: there is no file away/../nope.nff");
     fs::current_path(before);
     CHECK(count == 3);
+    for (const auto& [said, expected] : seen) CHECK_THAT(said, Catch::StartsWith(expected));
 }
 
 }  // namespace sahl::tests

@@ -104,6 +104,18 @@ TEST_CASE("What a parameter does not take is a mistake of usage", "[scene][json]
     }
 }
 
+TEST_CASE("A scene without parameters has none to set", "[scene][json]") {
+    LoadOptions options;
+    options.parameters = {{"x", "1"}};
+    try {
+        parse_json("", options);
+        FAIL_CHECK("was accepted");
+    } catch (const Error& error) {
+        CHECK(error.code() == ExitCode::usage);
+        CHECK(error.what() == std::string("--set x=1: scene.json has no parameters"));
+    }
+}
+
 TEST_CASE("A set value that its use refuses is refused at the use", "[scene][json]") {
     CHECK_THROWS_WITH(with({{"wide", "70000"}}),
                       Catch::StartsWith("scene.json:12:19: 'width' must be at least 1 and at most 65536"));
