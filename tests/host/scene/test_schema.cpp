@@ -182,6 +182,11 @@ std::vector<ordered_json> mutants_at(const ordered_json& document, const Pointer
             ordered_json& renamed = mutants.emplace_back(document)[place];
             renamed.erase(key);
             renamed[key + "x"] = member;
+            for (const std::string& name : {std::string(), "$" + key, "1-" + key}) {
+                ordered_json& other = mutants.emplace_back(document)[place];
+                other.erase(key);
+                other[name] = member;
+            }
         }
     }
     if (value.is_array() && !value.empty()) {
