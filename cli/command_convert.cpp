@@ -16,6 +16,16 @@ struct ConvertOptions {
     LoadOptions loading;
 };
 
+/// Throws as write_scene; what the format cannot hold is an error of the scene, by its name.
+void write(const ConvertOptions& options, const Scene& scene) {
+    try {
+        write_scene(options.output, scene);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::scene) throw;
+        throw Error(error.code(), fmt::format("{}: {}", options.input, error.what()));
+    }
+}
+
 ExitCode convert(const ConvertOptions& options, const CommonOptions& common) {
     std::error_code neither_exists;
     if (std::filesystem::equivalent(options.input, options.output, neither_exists)) {
@@ -25,7 +35,7 @@ ExitCode convert(const ConvertOptions& options, const CommonOptions& common) {
     }
     check_scene_output(options.output);
     const Scene scene = load_scene(options.input, options.loading);
-    write_scene(options.output, scene);
+    write(options, scene);
     if (common.json) {
         print_event({{"event", "convert"},
                      {"input", options.input},
@@ -45,9 +55,7 @@ ExitCode convert(const ConvertOptions& options, const CommonOptions& common) {
 Command add_convert_command(CLI::App& app, CommonOptions& common) {
     const auto options = std::make_shared<ConvertOptions>();
     CLI::App* command = app.add_subcommand("convert", "writes a scene in another format");
-    command->add_option("IN", options->input, "scene file: .json, .nff or .test")
-        ->required()
-        ->type_name("FILE");
+    add_scene_argument(*command, "IN", options->input);
     command->add_option("OUT", options->output, "scene file to write: .json, .nff or .test")
         ->required()
         ->type_name("FILE");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -19,15 +20,16 @@ using Json = nlohmann::ordered_json;
 struct Name {
     const char* one;
     const char* many;
+    const char* key;  ///< in JSON
 };
-constexpr std::array<Name, 6> primitive_names{{{"triangle", "triangles"},
-                                               {"polygon", "polygons"},
-                                               {"sphere", "spheres"},
-                                               {"cone", "cones"},
-                                               {"disc", "discs"},
-                                               {"box", "boxes"}}};
+constexpr std::array<Name, 6> primitive_names{{{"triangle", "triangles", "triangles"},
+                                               {"polygon", "polygons", "polygons"},
+                                               {"sphere", "spheres", "spheres"},
+                                               {"cone or cylinder", "cones and cylinders", "cones"},
+                                               {"disc", "discs", "discs"},
+                                               {"box", "boxes", "boxes"}}};
 constexpr std::array<Name, 3> light_names{
-    {{"point", "point"}, {"directional", "directional"}, {"spot", "spot"}}};
+    {{"point", "point", "point"}, {"directional", "directional", "directional"}, {"spot", "spot", "spot"}}};
 
 struct InfoOptions {
     std::string scene;
@@ -83,6 +85,34 @@ std::vector<std::string> camera_names(const Scene& scene) {
     return names;
 }
 
+bool is_empty(const SceneInfo& info) { return info.placed_primitives == 0; }
+
+/// "-1 0 -1 to 1 2 1": to 1/10000 of each axis, which is more than the tree's boxes are wider.
+std::string bounds_text(const SceneInfo& info) {
+    if (is_empty(info)) return "none";
+    std::array<double, 3> lo{};
+    std::array<double, 3> hi{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        lo[k] = static_cast<double>(info.bounds.lo[k]);
+        hi[k] = static_cast<double>(info.bounds.hi[k]);
+        const double largest = std::max(std::abs(lo[k]), std::abs(hi[k]));
+        if (largest == 0) continue;
+        const double step = std::pow(10.0, std::floor(std::log10(largest)) - 4);
+        lo[k] = std::round(lo[k] / step) * step + 0.0;  // no -0
+        hi[k] = std::round(hi[k] / step) * step + 0.0;
+    }
+    return fmt::format("{:g} {:g} {:g} to {:g} {:g} {:g}", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
+}
+
+/// The name of each material, by id.
+std::string material_lines(const Scene& scene) {
+    std::string text;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        text += fmt::format("  {:<14}{}\n", i, scene.materials[i].name);
+    }
+    return text;
+}
+
 std::string unused_text(const SceneInfo& info) {
     std::vector<std::string> parts;
     for (const std::string& name : info.unused_materials) parts.push_back("material '" + name + "'");
@@ -90,7 +120,7 @@ std::string unused_text(const SceneInfo& info) {
     return parts.empty() ? "nothing" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string info_text(const InfoOptions& options, const Scene& scene, const SceneInfo& info) {
+std::string info_text(const InfoOptions& options, const Scene& scene, const SceneInfo& info, bool verbose) {
     std::string text;
     const auto line = [&text](std::string_view name, const std::string& value) {
         text += fmt::format("{:<16}{}\n", name, value);
@@ -105,8 +135,8 @@ std::string info_text(const InfoOptions& options, const Scene& scene, const Scen
                                scene.ambient.x, scene.ambient.y, scene.ambient.z));
     line("cameras", fmt::format("{}: {}", scene.cameras.size(), fmt::join(camera_names(scene), ", ")));
     line("materials", fmt::format("{}, textures {}", scene.materials.size(), scene.textures.size()));
-    const auto& [lo, hi] = info.bounds;
-    line("bounds", fmt::format("{:g} {:g} {:g} to {:g} {:g} {:g}", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]));
+    if (verbose) text += material_lines(scene);
+    line("bounds", bounds_text(info));
     line("BVH", fmt::format("{} nodes, {} leaves; trees: {}", info.nodes, info.leaves, info.trees));
     line("  the world's",
          fmt::format("{} nodes, {} leaves, depth {}, {:.2f} of 4 primitives a leaf, SAH cost "
@@ -126,7 +156,7 @@ std::string info_text(const InfoOptions& options, const Scene& scene, const Scen
 template <std::size_t N>
 Json counts_object(const std::array<std::uint64_t, N>& counts, const std::array<Name, N>& names) {
     Json object{{"count", sum(counts)}};
-    for (std::size_t i = 0; i < N; ++i) object[names[i].many] = counts[i];
+    for (std::size_t i = 0; i < N; ++i) object[names[i].key] = counts[i];
     return object;
 }
 
@@ -150,6 +180,10 @@ Json info_event(const InfoOptions& options, const Scene& scene, const SceneInfo&
     lights["ambient"] = vector_array(scene.ambient);
     Json primitives = counts_object(info.primitives, primitive_names);
     primitives["placed"] = info.placed_primitives;
+    Json material_names = Json::array();
+    for (const Material& material : scene.materials) material_names.push_back(material.name);
+    Json bounds;  // null
+    if (!is_empty(info)) bounds = {vector_array(info.bounds.lo), vector_array(info.bounds.hi)};
     return {{"event", "scene"},
             {"scene", options.scene},
             {"format", format_of(options.scene)},
@@ -162,8 +196,9 @@ Json info_event(const InfoOptions& options, const Scene& scene, const SceneInfo&
             {"lights", lights},
             {"cameras", cameras},
             {"materials", scene.materials.size()},
+            {"material_names", material_names},
             {"textures", scene.textures.size()},
-            {"bounds", {vector_array(info.bounds.lo), vector_array(info.bounds.hi)}},
+            {"bounds", bounds},
             {"bvh",
              {{"trees", info.trees},
               {"nodes", info.nodes},
@@ -186,7 +221,7 @@ ExitCode describe(const InfoOptions& options, const CommonOptions& common) {
     if (common.json) {
         print_event(info_event(options, scene, info));
     } else {
-        print(info_text(options, scene, info));
+        print(info_text(options, scene, info, common.verbose));
     }
     return ExitCode::ok;
 }
@@ -196,13 +231,13 @@ ExitCode describe(const InfoOptions& options, const CommonOptions& common) {
 Command add_info_command(CLI::App& app, CommonOptions& common) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand("info", "says what is in a scene");
-    command->add_option("SCENE", options->scene, "scene file: .json, .nff or .test")
-        ->required()
-        ->type_name("FILE");
+    add_scene_argument(*command, "SCENE", options->scene);
     add_scene_options(*command, options->loading);
     add_common_options(*command, common);
     command->footer(
         "An unused material is one that no primitive has, an unused group one that no instance leads to.\n"
+        "Bounds are those of the tree, a little larger than the scene; in text they are rounded.\n"
+        "With -v or --json there are the materials' names by id, as the AOV id.material has it.\n"
         "The memory of the OpenCL driver comes on top of the plan.\n"
         "Examples:\n"
         "  sahl info scene.json\n"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <new>
 
 #include "cli/commands.h"
 #include "cli/output_name.h"
@@ -137,6 +138,11 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
     command->footer(
         "Of several images each takes those of --pixel-type, --transfer, --rounding and --compression\n"
         "that its format can hold.\n"
+        "AOVs are of sample 0 of each pixel, its first hit: Z the distance along the view axis (no hit: "
+        "inf),\n"
+        "N the unit normal and albedo the diffuse colour (no hit: 0), ids count from 0, id.instance 0 being "
+        "the\n"
+        "world (no hit: 4294967295).\n"
         "Examples:\n"
         "  sahl render balls.nff\n"
         "  sahl render balls.nff -o balls.exr --size 1920x1080 --spp 16\n"
@@ -144,7 +150,17 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
         "  sahl render scene.json --camera top --set radius=1.5 --set color=1,0,0\n"
         "  sahl render scene.json -o layers.exr -o preview.png --aov Z,N,albedo --compression piz\n"
         "  sahl render scene.test -o exact.png --transfer linear --rounding floor");
-    return {command, [options, &common] { return render(*options, common); }};
+    return {command, [options, &common] {
+                try {
+                    return render(*options, common);
+                } catch (const std::bad_alloc&) {
+                    throw Error(
+                        ExitCode::memory,
+                        fmt::format("out of memory: the scene or its image needs more than this machine "
+                                    "has; 'sahl info {}' says what takes how much",
+                                    options->scene));
+                }
+            }};
 }
 
 }  // namespace sahl::cli

@@ -9,9 +9,11 @@ namespace {
 /// The bash command that completes a value; empty where nothing is known of it.
 std::string bash_action(const CLI::Option& option) {
     const OptionWords& words = words_of(option);
-    if (!words.words.empty()) {
-        return fmt::format("{} \"$current\" {}", words.list ? "_sahl_list" : "_sahl_words",
-                           fmt::join(words.words, " "));
+    const std::string all = fmt::format("{}", fmt::join(words.words, " "));
+    if (words.list) return fmt::format("_sahl_list \"$current\" '{}' {}", words.alone, all);
+    if (!all.empty()) return fmt::format("_sahl_words \"$current\" {}", all);
+    if (!words.extensions.empty()) {
+        return fmt::format("_sahl_files_of \"$current\" {}", fmt::join(words.extensions, " "));
     }
     if (option.get_type_name() == "FILE") return "_sahl_files \"$current\"";
     if (option.get_type_name() == "DIR") return "_sahl_files \"$current\" -d";
@@ -61,17 +63,34 @@ constexpr const char* bash_helpers = R"(_sahl_words() {
     mapfile -t COMPREPLY < <(compgen -W "${*:2}" -- "$1")
 }
 
-# The last of words that commas separate.
+# The last of words that commas separate, each of which may be there once; $2 stands alone.
 _sahl_list() {
-    local before=
+    local before= word words=()
     [[ $1 == *,* ]] && before=${1%,*},
+    [[ $before ]] || words=("$2")
+    [[ $before == "$2", ]] && return
+    for word in "${@:3}"; do
+        [[ ,$before == *,"$word",* ]] || words+=("$word")
+    done
     compopt -o nospace 2>/dev/null
-    mapfile -t COMPREPLY < <(compgen -P "$before" -W "${*:2}" -- "${1##*,}")
+    mapfile -t COMPREPLY < <(compgen -P "$before" -W "${words[*]}" -- "${1##*,}")
 }
 
 _sahl_files() {
     compopt -o filenames 2>/dev/null
     mapfile -t COMPREPLY < <(compgen "${2:--f}" -- "$1")
+}
+
+# Folders and the files with one of the extensions behind $1, of any case.
+_sahl_files_of() {
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -d -- "$1")
+    local file extension
+    while read -r file; do
+        for extension in "${@:2}"; do
+            if [[ ${file,,} == *."$extension" && ! -d $file ]]; then COMPREPLY+=("$file"); fi
+        done
+    done < <(compgen -f -- "$1")
 }
 )";
 
@@ -106,9 +125,12 @@ std::string zsh_value(const CLI::Option& option, const std::string& name) {
     const OptionWords& words = words_of(option);
     std::string action;
     if (words.list) {
-        action = fmt::format("_values -s , {} {}", name, fmt::join(words.words, " "));
+        action = fmt::format("_values -s , {} \"({}){}\"", name, fmt::join(words.words, " "), words.alone);
+        for (const std::string& word : words.words) action += fmt::format(" \"({}){}\"", words.alone, word);
     } else if (!words.words.empty()) {
         action = fmt::format("({})", fmt::join(words.words, " "));
+    } else if (!words.extensions.empty()) {
+        action = fmt::format("_files -g \"(#i)*.({})\"", fmt::join(words.extensions, "|"));
     } else if (option.get_type_name() == "FILE") {
         action = "_files";
     } else if (option.get_type_name() == "DIR") {

@@ -167,7 +167,8 @@ int guarded_run(int argc, char** argv) {
     } catch (const Error& error) {
         return report(error.code(), error.what(), common);
     } catch (const std::bad_alloc&) {
-        return report(ExitCode::memory, "out of memory; a smaller --size needs less", common);
+        return report(ExitCode::memory, "out of memory: what was asked for needs more than this machine has",
+                      common);
     } catch (const std::exception& error) {
         return report(ExitCode::internal,
                       fmt::format("internal error: {}; please report this with the command line and "

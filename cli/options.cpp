@@ -74,6 +74,12 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group("Messages");
 }
 
+void add_scene_argument(CLI::App& app, const std::string& name, std::string& target) {
+    CLI::Option* option =
+        app.add_option(name, target, "scene file: .json, .nff or .test")->required()->type_name("FILE");
+    set_words(*option, {.extensions = {"json", "nff", "test"}});
+}
+
 void add_scene_options(CLI::App& app, LoadOptions& options) {
     const auto set = [&options](const std::string& text) {
         auto assignment = read_assignment("--set", text);

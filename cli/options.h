@@ -32,6 +32,9 @@ struct CommonOptions {
 void add_device_options(CLI::App& app, CommonOptions& options);
 void add_common_options(CLI::App& app, CommonOptions& options);
 
+/// The argument `name`, the scene to load.
+void add_scene_argument(CLI::App& app, const std::string& name, std::string& target);
+
 /// `--set` and `--asset-root`, of all commands that load a scene.
 void add_scene_options(CLI::App& app, LoadOptions& options);
 
@@ -54,10 +57,12 @@ CLI::Option* add_values(CLI::App& app, const std::string& names, const std::stri
         ->allow_extra_args(false);
 }
 
-/// The words that an option's value may be, for completion; none where it may be any text.
+/// What an option's value may be, for completion; nothing where it may be any text.
 struct OptionWords {
     std::vector<std::string> words{};
-    bool list = false;  ///< several, separated by commas
+    bool list = false;                      ///< several, separated by commas
+    std::string alone{};                    ///< of a list: one more word, which no other goes with
+    std::vector<std::string> extensions{};  ///< of files
 };
 const OptionWords& words_of(const CLI::Option& option);
 void set_words(const CLI::Option& option, OptionWords words);

@@ -7,6 +7,7 @@ namespace sahl::cli {
 namespace {
 
 constexpr double most_stops = 100;
+constexpr std::string_view all_aovs = "all";
 constexpr int most_samples = 16384;  // more could overflow the film's fixed point
 
 std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
@@ -16,9 +17,12 @@ std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
         choices.emplace_back(name.name, name.aov);
         all.push_back(name.aov);
     }
-    if (text == "all") return all;
+    if (text == all_aovs) return all;
     std::vector<Aov> aovs;
     for (const std::string_view piece : split(text, ',')) {
+        if (piece == all_aovs) {
+            throw Error(ExitCode::usage, fmt::format("{} '{}': '{}' stands alone", option, text, all_aovs));
+        }
         const Aov aov = read_choice<Aov>(option, piece, choices);
         if (std::find(aovs.begin(), aovs.end(), aov) != aovs.end()) refuse(option, text, "each AOV once");
         aovs.push_back(aov);
@@ -58,11 +62,12 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
 }
 
 void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
-    OptionWords words{{"all"}, true};
+    OptionWords words{.list = true, .alone = std::string(all_aovs)};
     for (const AovName& name : aov_names) words.words.emplace_back(name.name);
     CLI::Option* option = add_value(
         command, "--aov", "LIST", [&aovs](const std::string& text) { aovs = read_aovs("--aov", text); },
-        fmt::format("channels beside the image in EXR files: {}", either(words.words)));
+        fmt::format("channels beside the image in EXR files: {}, or several of {}", words.alone,
+                    fmt::join(words.words, ", ")));
     set_words(*option, std::move(words));
 }
 
@@ -106,14 +111,12 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
-    command.add_option("SCENE", options.scene, "scene file: .json, .nff or .test")
-        ->required()
-        ->type_name("FILE");
+    add_scene_argument(command, "SCENE", options.scene);
     add_values(
         command, "-o,--output", "FILE",
         [&options](const std::string& text) { options.outputs.push_back(text); },
-        "image, may be given several times; {depth} stands for the depth (default: the scene's name, .png, "
-        "here)");
+        "image, may be given several times; {depth} stands for the depth, missing folders are made "
+        "(default: the scene's name, .png, here)");
     add_scene_options(command, options.loading);
     add_image_options(command, options);
     add_aov_option(command, options.aovs);

@@ -90,17 +90,27 @@ void warn_of_lost_light(const Rendered& image) {
 
 std::vector<std::pair<std::string, std::string>> metadata(const Rendered& image, const RenderOptions& options,
                                                           const DeviceInfo& device) {
-    return {{"Software", "Sahl " SAHL_VERSION},
-            {"Sahl:Scene", std::filesystem::path(options.scene).filename().string()},
-            {"Sahl:Camera", image.camera},
-            {"Sahl:Depth", std::to_string(image.settings.depth)},
-            {"Sahl:SamplesPerPixel", std::to_string(image.settings.spp)},
-            {"Sahl:Seed", std::to_string(image.settings.seed)},
-            {"Sahl:Device", device.name},
-            {"Sahl:Driver", device.driver},
-            {"Sahl:RenderSeconds", fmt::format("{:.3f}", image.statistics.seconds)},
-            {"Sahl:NonFinite", std::to_string(image.non_finite)},
-            {"Sahl:Clamped", std::to_string(image.clamped)}};
+    std::vector<std::pair<std::string, std::string>> entries{
+        {"Software", "Sahl " SAHL_VERSION},
+        {"Sahl:Scene", std::filesystem::path(options.scene).filename().string()},
+        {"Sahl:Camera", image.camera},
+        {"Sahl:Depth", std::to_string(image.settings.depth)},
+        {"Sahl:SamplesPerPixel", std::to_string(image.settings.spp)},
+        {"Sahl:Seed", std::to_string(image.settings.seed)},
+        {"Sahl:Device", device.name},
+        {"Sahl:Driver", device.driver},
+        {"Sahl:RenderSeconds", fmt::format("{:.3f}", image.statistics.seconds)},
+        {"Sahl:NonFinite", std::to_string(image.non_finite)},
+        {"Sahl:Clamped", std::to_string(image.clamped)}};
+    if (options.encoding.exposure != 0) {
+        entries.emplace_back("Sahl:Exposure", fmt::format("{}", options.encoding.exposure));
+    }
+    std::string parameters;
+    for (const auto& [name, value] : options.loading.parameters) {
+        parameters += fmt::format("{}{}={}", parameters.empty() ? "" : " ", name, value);
+    }
+    if (!parameters.empty()) entries.emplace_back("Sahl:Parameters", parameters);
+    return entries;
 }
 
 }  // namespace sahl::cli

@@ -34,10 +34,10 @@ struct SceneInfo {
     std::uint64_t instances = 0;                ///< as written: in the world and in groups
     std::uint64_t placed_instances = 0;         ///< nested ones once for each place
     std::array<std::uint64_t, 3> lights{};      ///< by LightKind
-    Bounds bounds{};                            ///< of the whole world; zeros if it is empty
-    BvhStatistics bvh;                          ///< of the world, where an instance counts as one primitive
-    std::uint64_t trees = 1;                    ///< the world's and those of instanced groups
-    std::uint64_t nodes = 0;                    ///< of all trees
+    Bounds bounds{};          ///< the tree's, a little larger than the world; zeros if empty
+    BvhStatistics bvh;        ///< of the world, where an instance counts as one primitive
+    std::uint64_t trees = 1;  ///< the world's and those of instanced groups
+    std::uint64_t nodes = 0;  ///< of all trees
     std::uint64_t leaves = 0;
     MemoryPlan memory;
     std::vector<std::string> unused_materials;  ///< that no primitive has

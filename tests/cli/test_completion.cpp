@@ -50,6 +50,8 @@ struct BashRoom {
         write_file(folder / "sahl.bash", output_of({"completion", "bash"}));
         write_file(folder / "scene one.nff", "");
         write_file(folder / "scene.json", "");
+        write_file(folder / "scene.png", "");
+        write_file(folder / "OLD.TEST", "");
         fs::create_directory(folder / "scenes");
     }
 
@@ -96,11 +98,18 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         {{"sahl", "render", "--pixel-type", "u"}, {"uint16", "uint8"}},
         {{"sahl", "render", "--compression", "z"}, {"zip", "zips"}},
         {{"sahl", "render", "--aov", "id.p"}, {"id.primitive"}},
-        {{"sahl", "render", "--aov", "Z,al"}, {"Z,albedo", "Z,all"}},
+        {{"sahl", "render", "--aov", "al"}, {"albedo", "all"}},
+        {{"sahl", "render", "--aov", "Z,al"}, {"Z,albedo"}},
+        {{"sahl", "render", "--aov", "Z,albedo,id.primitive,"},
+         {"Z,albedo,id.primitive,N", "Z,albedo,id.primitive,id.instance",
+          "Z,albedo,id.primitive,id.material"}},
+        {{"sahl", "render", "--aov", "all,"}, {}},
         {{"sahl", "info", "--color", "a"}, {"always", "auto"}},
         {{"sahl", "render", "--spp", ""}, {}},
         {{"sahl", "render", "sc"}, {"scene one.nff", "scene.json", "scenes"}},
-        {{"sahl", "render", "scene.json", "-o", "scene."}, {"scene.json"}},
+        {{"sahl", "info", ""}, {"OLD.TEST", "scene one.nff", "scene.json", "scenes"}},
+        {{"sahl", "convert", "sa"}, {}},
+        {{"sahl", "render", "scene.json", "-o", "scene."}, {"scene.json", "scene.png"}},
         {{"sahl", "render", "--asset-root", ""}, {"scenes"}},
         {{"sahl", "compare", "a.png", "sahl"}, {"sahl.bash"}},
         {{"sahl", "completion", ""}, {"bash", "zsh"}},
@@ -147,6 +156,10 @@ TEST_CASE("completion: zsh takes the script and completes", "[cli]") {
     INFO(syntax.err);
     CHECK(syntax.status == 0);
 
+    write_file(folder / "one.nff", "");
+    write_file(folder / "OLD.TEST", "");
+    write_file(folder / "image.png", "");
+    fs::create_directory(folder / "folder");
     // A shell on a pseudo terminal, which is asked to list what could follow.
     write_file(folder / "ask", R"(zmodload zsh/zpty
 zpty shell zsh -f -i
@@ -163,6 +176,10 @@ zpty -d shell
     CHECK_THAT(listed("sahl re"), Catch::Contains("render"));
     CHECK_THAT(listed("sahl render --transfer "), Catch::Contains("srgb") && Catch::Contains("linear"));
     CHECK_THAT(listed("sahl render --pix"), Catch::Contains("--pixel-type"));
+    CHECK_THAT(listed("sahl render --aov="), Catch::Contains("all ") && Catch::Contains("albedo"));
+    CHECK_THAT(listed("sahl render --aov=Z,"), Catch::Contains("albedo") && !Catch::Contains("all "));
+    CHECK_THAT(listed("sahl info "), Catch::Contains("one.nff") && Catch::Contains("OLD.TEST") &&
+                                         Catch::Contains("folder") && !Catch::Contains("image.png"));
     CHECK_THAT(listed("sahl render --aov=Z,id"),
                Catch::Contains("id.primitive") && Catch::Contains("id.material"));
 }

@@ -99,7 +99,9 @@ TEST_CASE("convert: refused with the status and the reason", "[cli][convert]") {
         {{"in.nff", "out.json", "third"}, 2, "nothing takes the argument 'third'"},
         {{"missing.nff", "out.json"}, 3, "there is no such file"},
         {{"bad.nff", "out.json"}, 3, "bad.nff:1:1: unknown entity"},
-        {{"in.nff", "out.test"}, 3, ".test has no background but black; write .json, which has everything"},
+        {{"in.nff", "out.test"},
+         3,
+         "error: in.nff: .test has no background but black; write .json, which has everything"},
         {{"in.nff", "in.nff/out.json"}, 6, "cannot write 'in.nff/out.json'"},
     }));
     const TemporaryFolder folder;

@@ -97,7 +97,8 @@ TEST_CASE("info: the text says the same", "[cli]") {
     CHECK(result.err == "");
     CHECK(contains(result.out, "(Neutral File Format)\n"));
     CHECK(contains(result.out, "\nimage           64x48, depth 4\n"));
-    CHECK(contains(result.out, "\nprimitives      8: 4 triangles, 1 polygon, 2 spheres, 1 cone\n"));
+    CHECK(
+        contains(result.out, "\nprimitives      8: 4 triangles, 1 polygon, 2 spheres, 1 cone or cylinder\n"));
     CHECK(contains(result.out, "\nlights          2: 2 point; "));
     CHECK(contains(result.out, "\ncameras         1: camera\n"));
     CHECK(contains(result.out, "\n  film             72.00 KiB\n"));
@@ -142,8 +143,22 @@ TEST_CASE("info: groups, instances, parameters and what is unused in a Sahl scen
     CHECK(event.at("bounds")[1][0].get<double>() == Approx(13).margin(1e-3));
     const nlohmann::json larger = info_event({scene, "--set", "size=4"});
     CHECK(larger.at("bounds")[0][0].get<double>() == Approx(-4).margin(1e-3));
+    CHECK(event.at("material_names") == nlohmann::json({"red", "spare"}));
     const ProcessResult text = info(folder, {scene});
+    CHECK(contains(text.out, "\nmaterials       2, textures 0\nbounds          -1 -1 -1 to 13 3 8\n"));
+    const ProcessResult verbose = info(folder, {scene, "-v"});
+    CHECK(contains(verbose.out,
+                   "\nmaterials       2, textures 0\n  0             red\n  1             spare\nbounds"));
     CHECK(contains(text.out, "unused          material 'spare', group 'lonely'\n"));
+}
+
+TEST_CASE("info: a scene of nothing has no bounds", "[cli]") {
+    const TemporaryFolder folder;
+    write_file(folder / "a.json",
+               R"({"sahl": 1, "cameras": {"main": {"eye": [0, 0, 9], "look_at": [0, 0, 0]}}})");
+    const std::string scene = (folder / "a.json").string();
+    CHECK(info_event({scene}).at("bounds").is_null());
+    CHECK(contains(info(folder, {scene}).out, "\nbounds          none\n"));
 }
 
 TEST_CASE("info: a scene that is wrong or not there is exit status 3", "[cli]") {

@@ -115,6 +115,8 @@ TEST_CASE("outputs: AOVs that are not there, or have no room", "[cli]") {
     check_refused({"-o", "a.exr", "--aov", "depth"}, {"--aov 'depth'", "Z, N, albedo, id.primitive"});
     check_refused({"-o", "a.exr", "--aov", "Z,Z"}, {"each AOV once"});
     check_refused({"-o", "a.exr", "--aov", "Z,"}, {"--aov"});
+    check_refused({"-o", "a.exr", "--aov", "all,Z"}, {"--aov 'all,Z': 'all' stands alone"});
+    check_refused({"-o", "a.exr", "--aov", "Z,all"}, {"--aov 'Z,all': 'all' stands alone"});
     check_refused({"--aov", "Z"}, {"'cli_mirrors.png' has no room for AOVs", "-o 'cli_mirrors.exr'"});
     check_refused({"-o", "a.png", "-o", "b.tif", "--aov", "all"}, {"-o 'a.exr'"});
 }
@@ -129,6 +131,30 @@ TEST_CASE("outputs: the camera's name is in the file and the start event", "[cli
     for (const char* name : {"a.exr", "a.png"})
         CHECK(spec_of(folder / name).get_string_attribute("Sahl:Camera") == "camera");
     check_refused({"--camera", "camra"}, {"--camera 'camra'", "did you mean 'camera'?", "it has camera"});
+}
+
+TEST_CASE("outputs: exposure and parameters are in the file if they were given", "[cli]") {
+    const TemporaryFolder folder;
+    write_file(folder / "a.json", R"({
+  "sahl": 1,
+  "film": {"width": 2, "height": 2},
+  "parameters": {"glow": {"type": "color", "default": 0}, "size": {"type": "number", "default": 1}},
+  "cameras": {"main": {"eye": [0, 0, 9], "look_at": [0, 0, 0]}},
+  "objects": [{"type": "sphere", "radius": "$size", "material": {"emission": "$glow"}}]
+})");
+    const std::vector<std::string> plain{"render", "a.json", "-o", "a.exr", "-o", "a.png"};
+    REQUIRE(run_sahl_in(folder.path(), plain).status == 0);
+    for (const char* name : {"a.exr", "a.png"}) {
+        CHECK(spec_of(folder / name).find_attribute("Sahl:Exposure") == nullptr);
+        CHECK(spec_of(folder / name).find_attribute("Sahl:Parameters") == nullptr);
+    }
+    std::vector<std::string> given = plain;
+    given.insert(given.end(), {"--exposure", "-1.5", "--set", "glow=1,0.5,0", "--set", "size=2"});
+    REQUIRE(run_sahl_in(folder.path(), given).status == 0);
+    for (const char* name : {"a.exr", "a.png"}) {
+        CHECK(spec_of(folder / name).get_string_attribute("Sahl:Exposure") == "-1.5");
+        CHECK(spec_of(folder / name).get_string_attribute("Sahl:Parameters") == "glow=1,0.5,0 size=2");
+    }
 }
 
 TEST_CASE("outputs: a scene's cameras, its first by default", "[cli]") {
