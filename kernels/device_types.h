@@ -227,15 +227,16 @@ typedef struct {
 SAHL_STATIC_ASSERT(sizeof(CameraConstants) == 112, "CameraConstants is 112 bytes");
 
 // Which camera samples a wave generates: `count` of them from number `first` (low and high word)
-// on, counted pixel by pixel in the crop's tile order, samples 0..`samples`-1 of each pixel's `spp`.
+// on, counted pixel by pixel in the crop's tile order: `samples` of each pixel's `spp`, from sample
+// `first_sample` on.
 typedef struct {
     sahl_uint first_low, first_high;
     sahl_uint count;
     sahl_uint spp;
     sahl_uint crop_x, crop_y, crop_width, crop_height;
     sahl_uint seed_low, seed_high;
+    sahl_uint first_sample;
     sahl_uint samples;
-    sahl_uint spare;
 } WaveConstants;
 SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 

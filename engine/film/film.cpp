@@ -91,6 +91,15 @@ void Film::add(std::span<const std::uint32_t> pixels, const float* red, const fl
     }
 }
 
+void Film::merge(const Film& other) {
+    if (other.width_ != width_ || other.height_ != height_) {
+        throw Error(ExitCode::usage, "films of different sizes cannot be merged");
+    }
+    for (std::size_t i = 0; i < sums_.size(); ++i) add_to(sums_[i], other.sums_[i]);
+    non_finite_ += other.non_finite_;
+    clamped_ += other.clamped_;
+}
+
 Image Film::resolve(int samples) const {
     Image image{
         .width = width_, .height = height_, .channels = 3, .pixels = std::vector<float>(sums_.size())};

@@ -42,6 +42,10 @@ public:
     /// and counted. Each is rounded to the nearest 2^-32, halves away from zero.
     void add(std::span<const std::uint32_t> pixels, const float* red, const float* green, const float* blue);
 
+    /// Adds the sums and counts of a film of the same size: parts of a job, in any order, make the film
+    /// of the whole. Throws Error(usage) for another size.
+    void merge(const Film& other);
+
     /// The sums divided by `samples` (a pixel).
     Image resolve(int samples) const;
 

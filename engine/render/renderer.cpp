@@ -49,6 +49,14 @@ Crop crop_of(const RenderSettings& settings) {
     return crop;
 }
 
+SampleRange samples_of(const RenderSettings& settings) {
+    const SampleRange samples = settings.samples.value_or(SampleRange{0, settings.spp});
+    if (samples.begin < 0 || samples.begin >= samples.end || samples.end > settings.spp) {
+        throw Error(ExitCode::usage, "the range of samples must lie within the samples a pixel");
+    }
+    return samples;
+}
+
 std::uint64_t pixel_count(const Crop& crop) {
     return std::uint64_t(crop.x1 - crop.x0) * std::uint64_t(crop.y1 - crop.y0);
 }
@@ -91,7 +99,7 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
     }
     const device::CameraConstants camera =
         camera_constants(impl_->cameras[settings.camera], settings.resolution);
-    const std::uint64_t samples = pixel_count(crop) * std::uint64_t(settings.spp);
+    const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
     RayQueues queues(impl_->device, impl_->capacity(settings, samples), settings.depth,
                      impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};

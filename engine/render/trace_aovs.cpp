@@ -62,6 +62,7 @@ std::vector<AovImage> trace_aovs(Wavefront& wavefront, const device::CameraConst
     Buffer ids(device, SAHL_AOV_UINTS * capacity * sizeof(std::uint32_t), "AOV ids");
 
     device::WaveConstants wave = wave_constants(settings, crop);
+    wave.first_sample = 0;
     wave.samples = 1;
     const std::uint64_t pixels = std::uint64_t{wave.crop_width} * wave.crop_height;
     std::vector<AovImage> images = blank_images(aovs, pixels);

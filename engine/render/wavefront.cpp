@@ -104,7 +104,9 @@ device::WaveConstants wave_constants(const RenderSettings& settings, const Crop&
     wave.crop_height = static_cast<std::uint32_t>(crop.y1 - crop.y0);
     wave.seed_low = static_cast<std::uint32_t>(settings.seed);
     wave.seed_high = static_cast<std::uint32_t>(settings.seed >> 32U);
-    wave.samples = wave.spp;
+    const SampleRange samples = settings.samples.value_or(SampleRange{0, settings.spp});
+    wave.first_sample = static_cast<std::uint32_t>(samples.begin);
+    wave.samples = static_cast<std::uint32_t>(samples.count());
     return wave;
 }
 
@@ -124,7 +126,7 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
     RayQueues& queues = wavefront.queues;
     GenerationLauncher launcher(wavefront);
     device::WaveConstants wave = wave_constants(settings, crop);
-    const std::uint64_t samples = std::uint64_t{wave.crop_width} * wave.crop_height * wave.spp;
+    const std::uint64_t samples = std::uint64_t{wave.crop_width} * wave.crop_height * wave.samples;
     const auto depth = static_cast<std::uint32_t>(settings.depth);
 
     RenderStatistics statistics;

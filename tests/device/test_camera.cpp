@@ -77,7 +77,7 @@ TEST_CASE("camera rays go where the oracle's go") {
                                       {{1e6, -1e6, 1e5}, {1e6, -1e6, 0}, {1, 1, 0}, 3},
                                       {{0, 0, 1e-3}, {1e-3, 0, 0}, {0, 0, 1}, 170}};
     const Resolution resolution{37, 21};
-    const device::WaveConstants wave{0, 0, 37 * 21, 1, 0, 0, 37, 21, 5, 0, 1, 0};
+    const device::WaveConstants wave{0, 0, 37 * 21, 1, 0, 0, 37, 21, 5, 0, 0, 1};
     for (const Camera& camera : cameras) {
         const std::size_t count = wave.count;
         Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
@@ -127,14 +127,14 @@ TEST_CASE("a crop and a later part of the samples get the rays of the whole imag
         }
         return result;
     };
-    const auto whole = generate({0, 0, 40 * 30 * kSpp, kSpp, 0, 0, 40, 30, 9, 1, kSpp, 0});
-    const auto crop = generate({0, 0, 11 * 13 * kSpp, kSpp, 7, 5, 11, 13, 9, 1, kSpp, 0});
+    const auto whole = generate({0, 0, 40 * 30 * kSpp, kSpp, 0, 0, 40, 30, 9, 1, 0, kSpp});
+    const auto crop = generate({0, 0, 11 * 13 * kSpp, kSpp, 7, 5, 11, 13, 9, 1, 0, kSpp});
     for (std::size_t y = 0; y < 13; ++y) {
         for (std::size_t i = 0; i < 11 * kSpp; ++i)
             REQUIRE(crop[y * 11 * kSpp + i] == whole[((y + 5) * 40 + 7) * kSpp + i]);
     }
-    auto parts = generate({0, 0, 500, kSpp, 0, 0, 40, 30, 9, 1, kSpp, 0});
-    const auto rest = generate({500, 0, 40 * 30 * kSpp - 500, kSpp, 0, 0, 40, 30, 9, 1, kSpp, 0});
+    auto parts = generate({0, 0, 500, kSpp, 0, 0, 40, 30, 9, 1, 0, kSpp});
+    const auto rest = generate({500, 0, 40 * 30 * kSpp - 500, kSpp, 0, 0, 40, 30, 9, 1, 0, kSpp});
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (parts[i] == std::array<float, 3>{}) parts[i] = rest[i];
     }
@@ -144,7 +144,7 @@ TEST_CASE("a crop and a later part of the samples get the rays of the whole imag
 TEST_CASE("samples are numbered beyond 32 bits") {
     KernelRunner runner(kKernels);
     // Sample 2^32 of 2^14 a pixel is the first of pixel 2^18: the top left one of strip 32 of 1024 columns.
-    const device::WaveConstants wave{0, 1, 10, 16384, 0, 0, 1024, 1024, 0, 0, 16384, 0};
+    const device::WaveConstants wave{0, 1, 10, 16384, 0, 0, 1024, 1024, 0, 0, 0, 16384};
     Buffer rays(runner.device(), SAHL_RAY_FLOATS * std::size_t{wave.count} * 4, "rays");
     Buffer ids(runner.device(), SAHL_RAY_UINTS * std::size_t{wave.count} * 4, "ids");
     runner.run("generate", wave.count, constants({}, {1024, 1024}), wave, rays, ids);

@@ -131,6 +131,7 @@ const std::vector<Layout> layouts = {
     FIELD(WaveConstants, crop_height),
     FIELD(WaveConstants, seed_low),
     FIELD(WaveConstants, seed_high),
+    FIELD(WaveConstants, first_sample),
     FIELD(WaveConstants, samples),
 };
 

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/core/error.h"
 #include "tests/render/rendered.h"
 #include "tests/support/oracle/build_scene.h"
 
@@ -74,6 +75,33 @@ TEST_CASE("render: crops are parts of the whole, bit by bit", "[render]") {
         }
         INFO("crop " << crop.x0 << "," << crop.y0 << "," << crop.x1 << "," << crop.y1);
         CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("render: parts of the samples merge to the whole, bit by bit", "[render]") {
+    Renderer renderer(test_device(), branching_scene());
+    RenderSettings settings = square_settings(24, 3);
+    settings.spp = 16;
+    settings.seed = 3;
+    const Rendered whole = render(renderer, settings);
+    std::uint64_t rays = 0;
+    Film sum(test_device().memory(), 24, 24);
+    // Not in order, of different lengths, with another budget for one.
+    for (const SampleRange& part : {SampleRange{5, 16}, SampleRange{0, 1}, SampleRange{1, 5}}) {
+        settings.samples = part;
+        settings.ray_budget = part.begin == 1 ? 300 : 1U << 15U;
+        Film film(test_device().memory(), 24, 24);
+        rays += renderer.render(settings, film).generations[0].rays;
+        CHECK(film.resolve(part.count()).pixels != whole.image.pixels);
+        sum.merge(film);
+    }
+    CHECK(rays == whole.statistics.generations[0].rays);
+    CHECK(sum.resolve(settings.spp).pixels == whole.image.pixels);
+
+    Film film(test_device().memory(), 24, 24);
+    for (const SampleRange& wrong : {SampleRange{0, 17}, SampleRange{-1, 4}, SampleRange{4, 4}}) {
+        settings.samples = wrong;
+        CHECK_THROWS_AS(renderer.render(settings, film), Error);
     }
 }
 

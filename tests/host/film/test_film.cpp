@@ -54,6 +54,19 @@ std::vector<float> random_floats(std::size_t count, float largest, unsigned seed
 
 }  // namespace
 
+TEST_CASE("film: merged films hold the sums and counts of both", "[film]") {
+    MemoryAccountant accountant;
+    Film a(accountant, 2, 1), b(accountant, 2, 1), wider(accountant, 3, 1);
+    add(a, {{0, 0.25F, -1, 3}, {1, nan, 200000, 0}});
+    add(b, {{0, 0.5F, 1, 0x1p-32F}, {1, 1, inf, 7}});
+    a.merge(b);
+    const Image image = a.resolve(1);
+    CHECK(image.pixels == std::vector<float>{0.75F, 0, 3, 1, 131072, 7});
+    CHECK(a.non_finite_count() == 2);
+    CHECK(a.clamped_count() == 1);
+    CHECK_THROWS_AS(a.merge(wider), Error);
+}
+
 TEST_CASE("film: one contribution comes back exactly where Q31.32 holds it", "[film]") {
     for (const float value :
          {0.0F, 1.0F, -1.0F, 0.2F, 1.0F / 3, 131072.0F, -131072.0F, 131071.99F, 0x1p-32F, -0x1p-32F})
