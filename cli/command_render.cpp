@@ -25,6 +25,16 @@ void check_crop(const Crop& crop, const Resolution& resolution) {
                             crop.x1, crop.y1, resolution.width, resolution.height));
 }
 
+void check_samples(const SampleRange& samples, int spp) {
+    if (samples.end <= spp) return;
+    throw Error(ExitCode::usage,
+                fmt::format("--samples {}..{} reaches beyond --spp {}", samples.begin, samples.end, spp));
+}
+
+int sample_count(const RenderSettings& settings) {
+    return settings.samples ? settings.samples->count() : settings.spp;
+}
+
 std::size_t find_camera(const Scene& scene, const std::optional<std::string>& name) {
     if (!name) return 0;
     std::vector<std::string_view> names;
@@ -88,7 +98,7 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
     }
     result.non_finite = film.non_finite_count();
     result.clamped = film.clamped_count();
-    write_outputs(result, film.resolve(settings.spp), aovs, options, device.info());
+    write_outputs(result, film.resolve(sample_count(settings)), aovs, options, device.info());
     return result;
 }
 
@@ -97,6 +107,8 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
     RenderSettings settings;
     settings.resolution = options.size.value_or(scene.resolution);
     settings.spp = options.spp;
+    settings.samples = options.samples;
+    if (options.samples) check_samples(*options.samples, options.spp);
     settings.seed = options.seed;
     settings.crop = options.crop;
     settings.camera = find_camera(scene, options.camera);

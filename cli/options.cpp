@@ -122,6 +122,15 @@ Resolution read_size(std::string_view option, std::string_view text) {
             read_whole<int>(option, sides[1], 1, most_pixels_a_side)};
 }
 
+SampleRange read_samples(std::string_view option, std::string_view text) {
+    const std::size_t dots = text.find("..");
+    if (dots == std::string_view::npos) refuse(option, text, "A..B, such as 0..8,");
+    const SampleRange samples{read_whole<int>(option, text.substr(0, dots), 0, most_samples),
+                              read_whole<int>(option, text.substr(dots + 2), 0, most_samples)};
+    if (samples.begin >= samples.end) refuse(option, text, "a range with A < B (B is just outside)");
+    return samples;
+}
+
 Crop read_crop(std::string_view option, std::string_view text) {
     const std::vector<std::string_view> edges = split(text, ',');
     if (edges.size() != 4) refuse(option, text, "X0,Y0,X1,Y1 in pixels, such as 0,0,64,64,");

@@ -17,6 +17,8 @@
 
 namespace sahl::cli {
 
+constexpr int most_samples = 16384;  ///< a pixel; more could overflow the film's fixed point
+
 enum class ColorMode { automatic, always, never };
 
 /// Options of all commands (those of the device: of the commands that use one). They may stand
@@ -124,6 +126,9 @@ Resolution read_size(std::string_view option, std::string_view text);
 
 /// "X0,Y0,X1,Y1" with 0 <= X0 < X1 and 0 <= Y0 < Y1.
 Crop read_crop(std::string_view option, std::string_view text);
+
+/// "A..B" with 0 <= A < B.
+SampleRange read_samples(std::string_view option, std::string_view text);
 
 /// "4" or "0,1,2,3": each depth once.
 std::vector<int> read_depths(std::string_view option, std::string_view text);

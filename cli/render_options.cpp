@@ -8,7 +8,6 @@ namespace {
 
 constexpr double most_stops = 100;
 constexpr std::string_view all_aovs = "all";
-constexpr int most_samples = 16384;  // more could overflow the film's fixed point
 
 std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
     Choices<Aov> choices;
@@ -48,6 +47,10 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
             options.spp = read_whole<int>("--spp", text, 1, most_samples);
         },
         "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
+    add_value(
+        command, "--samples", "A..B",
+        [&options](const std::string& text) { options.samples = read_samples("--samples", text); },
+        "only samples A to B - 1 of the --spp of each pixel");
     add_value(
         command, "--seed", "N",
         [&options](const std::string& text) {

@@ -18,6 +18,7 @@ struct RenderOptions {
     std::optional<std::vector<int>> depths;
     std::optional<Crop> crop;
     int spp = 1;
+    std::optional<SampleRange> samples;
     std::uint64_t seed = 0;
     std::vector<Aov> aovs;
     OutputSettings encoding;

@@ -102,6 +102,9 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendered& image,
         {"Sahl:RenderSeconds", fmt::format("{:.3f}", image.statistics.seconds)},
         {"Sahl:NonFinite", std::to_string(image.non_finite)},
         {"Sahl:Clamped", std::to_string(image.clamped)}};
+    if (const auto& samples = image.settings.samples) {
+        entries.emplace_back("Sahl:Samples", fmt::format("{}..{}", samples->begin, samples->end));
+    }
     if (options.encoding.exposure != 0) {
         entries.emplace_back("Sahl:Exposure", fmt::format("{}", options.encoding.exposure));
     }

@@ -37,8 +37,8 @@ std::size_t HostMemory::mapped_bytes(std::size_t bytes) { return round_up(bytes,
 HostMemory::HostMemory(MemoryAccountant& accountant, std::size_t bytes, std::string_view name) {
     if (bytes == 0) return;
     const auto refuse = [&](const char* reason) {
-        throw Error(ExitCode::memory, fmt::format("{}: cannot allocate {} bytes: {}; lower --max-mem or the "
-                                                  "image size, or free memory",
+        throw Error(ExitCode::memory, fmt::format("{}: cannot allocate {} bytes: {}; render a smaller "
+                                                  "image or scene, or free memory",
                                                   name, bytes, reason));
     };
     if (bytes > SIZE_MAX / 4) refuse(std::strerror(ENOMEM));

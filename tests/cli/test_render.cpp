@@ -127,6 +127,24 @@ TEST_CASE("render: --exposure brightens, --size and --spp are obeyed", "[cli]") 
     CHECK(render_file("samples.exr", {"--size", "20x10", "--spp", "5"}).pixels != plain.pixels);
 }
 
+TEST_CASE("render: the samples' halves have the whole as their mean", "[cli]") {
+    const TemporaryFolder folder;
+    const auto rendered = [&](const std::string& name, const std::vector<std::string>& samples) {
+        std::vector<std::string> arguments{mirrors(), "-o", name,           "--size", "24x16",
+                                           "--spp",   "16", "--pixel-type", "float"};
+        arguments.insert(arguments.end(), samples.begin(), samples.end());
+        render_in(folder.path(), arguments);
+        return read_image(folder.path() / name);
+    };
+    const Image whole = rendered("whole.exr", {});
+    const Image first = rendered("first.exr", {"--samples", "0..8"});
+    const Image second = rendered("second.exr", {"--samples", "8..16"});
+    CHECK(first.pixels != second.pixels);
+    for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+        REQUIRE((first.pixels[i] + second.pixels[i]) / 2 ==
+                Approx(whole.pixels[i]).epsilon(1e-6).margin(1e-7));
+}
+
 TEST_CASE("render: --json tells what was done, line by line", "[cli]") {
     const TemporaryFolder folder;
     const ProcessResult result =

@@ -69,6 +69,9 @@ TEST_CASE("usage: values outside their range", "[cli]") {
         {"--crop", "X0,Y0,X1,Y1", {"1", "0,0,4", "0,0,4,4,4", "4x4"}},
         {"--crop", "0 to 65536", {"a,0,4,4", "-1,0,4,4", "0,0,4,65537"}},
         {"--crop", "X0 < X1", {"4,0,4,4", "0,4,4,4", "8,0,4,4"}},
+        {"--samples", "A..B", {"4", "0.4", "0-4", ""}},
+        {"--samples", "0 to 16384", {"..4", "0..", "-1..4", "0..16385", "0...4"}},
+        {"--samples", "A < B", {"4..4", "5..4"}},
         {"--seed", "0 to 18446744073709551615", {"-1", "1.5", "x", "18446744073709551616"}},
         {"--exposure", "-100 to 100", {"nan", "inf", "101", "-1e3", "one", "1,5", ""}},
         {"--transfer", "srgb, linear", {"gamma", "sRGB", ""}},
@@ -88,6 +91,11 @@ TEST_CASE("usage: a crop outside the image", "[cli]") {
     // The scene is 48x32.
     check_refused({{"render", scene_file("cli_mirrors.nff"), "--crop", "0,0,49,32"}, "48x32"});
     check_refused({{"render", scene_file("cli_mirrors.nff"), "--crop", "0,0,5,4", "--size", "4x4"}, "4x4"});
+}
+
+TEST_CASE("usage: samples that a pixel does not have", "[cli]") {
+    check_refused({{"render", scene_file("cli_mirrors.nff"), "--samples", "0..2"}, "--spp 1"});
+    check_refused({{"render", scene_file("cli_mirrors.nff"), "--spp", "8", "--samples", "4..9"}, "--spp 8"});
 }
 
 TEST_CASE("usage: names of several images", "[cli]") {
