@@ -103,7 +103,9 @@ void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t 
             const bool itself =
                 next[k].primitive == children[k].exclude && next[k].instance == children[k].exclude_instance;
             // Of another face of a solid, too, within what rays are moved.
-            const bool near_rim = wanted && wanted->edge_distance * object.size < 4 * blur;
+            const bool near_rim = wanted ? wanted->edge_distance * object.size < 4 * blur
+                                         // Inside, and out at once: only a ray from a rim is.
+                                         : steepness < 0 && t < blur;
             const bool on_edge = itself ? near_rim : t < blur;
             score.edge_hits += on_edge;
             const bool self_hit = !on_edge && (!wanted || wanted->t > blur);
