@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/interruption.h"
 #include "cli/standard_output.h"
 #include "engine/film/image_compare.h"
 #include "engine/film/image_io.h"
@@ -90,6 +91,7 @@ ExitCode compare_files(const CompareOptions& options, const CommonOptions& commo
     std::optional<Image> mask;
     if (options.mask) mask = read_image(*options.mask);
     const Comparison result = compare(a, b, static_cast<float>(options.threshold), mask ? &*mask : nullptr);
+    defer_interruption();  // the file becomes whole
     if (options.difference) write_image(*options.difference, difference_image(a, b), encoding);
 
     const std::uint64_t allowed = options.limit.of(result.pixels);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/interruption.h"
 #include "cli/standard_output.h"
 
 namespace sahl::cli {
@@ -35,6 +36,7 @@ ExitCode convert(const ConvertOptions& options, const CommonOptions& common) {
     }
     check_scene_output(options.output);
     const Scene scene = load_scene(options.input, options.loading);
+    defer_interruption();  // the file becomes whole
     write(options, scene);
     if (common.json) {
         print_event({{"event", "convert"},

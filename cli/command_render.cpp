@@ -7,7 +7,9 @@
 #include <new>
 
 #include "cli/commands.h"
+#include "cli/interruption.h"
 #include "cli/output_name.h"
+#include "cli/render_files.h"
 #include "cli/render_options.h"
 #include "cli/render_report.h"
 #include "engine/core/log.h"
@@ -73,16 +75,6 @@ ProgressStyle progress_style(const CommonOptions& common) {
     return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
 }
 
-void write_outputs(const Rendered& result, const Image& image, const std::vector<AovImage>& aovs,
-                   const RenderOptions& options, const DeviceInfo& device) {
-    for (const Output& output : result.outputs) {
-        OutputSettings encoding = output.encoding;
-        encoding.metadata = metadata(result, options, device);
-        const bool layers = can_hold_aovs(output.path);
-        write_image(output.path, image, encoding, layers ? std::span(aovs) : std::span<const AovImage>());
-    }
-}
-
 Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& settings,
                       const std::vector<Output>& outputs, const std::vector<AovImage>& aovs,
                       const std::string& camera, const RenderOptions& options, const CommonOptions& common) {
@@ -94,11 +86,17 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
                           "samples");
         result.statistics = renderer.render(
             settings, film,
-            [&progress](std::uint64_t done, std::uint64_t all) { progress.update(done, all); });
+            [&progress](std::uint64_t done, std::uint64_t all) {
+                defer_interruption();  // there is an image to save
+                progress.update(done, all);
+            },
+            interruption());
     }
     result.non_finite = film.non_finite_count();
     result.clamped = film.clamped_count();
-    write_outputs(result, film.resolve(sample_count(settings)), aovs, options, device.info());
+    const Image image = film.resolve(sample_count(settings));
+    if (is_partial(result)) save_partial(result, image, aovs, options, device.info());
+    write_files(result, image, aovs, options, device.info());
     return result;
 }
 
@@ -129,6 +127,9 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
     std::vector<AovImage> aovs;  // the same at every depth
     if (!options.aovs.empty()) aovs = renderer.render_aovs(settings, options.aovs);
     for (std::size_t i = 0; i < depths.size(); ++i) {
+        if (interruption().stop_requested()) {
+            throw Interrupted(fmt::format("{} of {} images are written", i, depths.size()));
+        }
         settings.depth = depths[i];
         const Rendered image =
             render_image(renderer, device, settings, outputs[i], aovs, camera, options, common);
@@ -155,6 +156,11 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
         "N the unit normal and albedo the diffuse colour (no hit: 0), ids count from 0, id.instance 0 being "
         "the\n"
         "world (no hit: 4294967295).\n"
+        "SIGINT (Ctrl-C) and SIGTERM end it with the exit status 130 and 143. What is finished of the image "
+        "is\n"
+        "saved as NAME.partial.EXT, which later runs leave alone; other pixels are black. A second one ends "
+        "it\n"
+        "at once.\n"
         "Examples:\n"
         "  sahl render balls.nff\n"
         "  sahl render balls.nff -o balls.exr --size 1920x1080 --spp 16\n"

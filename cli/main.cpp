@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/interruption.h"
 #include "cli/standard_output.h"
 #include "engine/core/log.h"
 #include "engine/core/nearest.h"
@@ -135,6 +136,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
         return ExitCode::ok;
     }
     configure_log(common);
+    if (common.json) report_interruption_as_event();
     if (version) {
         print_version(common);
         return ExitCode::ok;
@@ -164,6 +166,8 @@ int guarded_run(int argc, char** argv) {
     CommonOptions common;
     try {
         return static_cast<int>(run(argc, argv, common));
+    } catch (const Interrupted& interrupted) {
+        return report(interrupted);
     } catch (const Error& error) {
         return report(error.code(), error.what(), common);
     } catch (const std::bad_alloc&) {
@@ -186,5 +190,8 @@ int main(int argc, char** argv) {
     // A reader that went away and a file size limit are failed writes with a message, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    return sahl::cli::guarded_run(argc, argv);
+    sahl::cli::take_signals();
+    const int status = sahl::cli::guarded_run(argc, argv);
+    sahl::cli::defer_interruption();  // it is at its end: nothing to tell any more
+    return status;
 }

@@ -106,6 +106,7 @@ const Entries& exit_statuses() {
         {"5", "out of memory"},
         {"6", "the output was not written"},
         {"70", "internal error, worth a report"},
+        {"130, 143", "interrupted by SIGINT, by SIGTERM"},
     };
     return entries;
 }

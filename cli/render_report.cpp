@@ -26,6 +26,8 @@ GenerationCounts total(const RenderStatistics& statistics) {
 
 }  // namespace
 
+bool is_partial(const Rendered& image) { return image.statistics.finished_pixels < pixel_count(image.size); }
+
 void print_start(const RenderOptions& options, const RenderSettings& settings, const std::vector<int>& depths,
                  const std::string& camera, const DeviceInfo& device, const BvhStatistics& bvh) {
     nlohmann::ordered_json event{{"event", "start"},
@@ -102,6 +104,10 @@ std::vector<std::pair<std::string, std::string>> metadata(const Rendered& image,
         {"Sahl:RenderSeconds", fmt::format("{:.3f}", image.statistics.seconds)},
         {"Sahl:NonFinite", std::to_string(image.non_finite)},
         {"Sahl:Clamped", std::to_string(image.clamped)}};
+    if (is_partial(image)) {
+        entries.emplace_back("Sahl:Partial", fmt::format("{} of {} pixels", image.statistics.finished_pixels,
+                                                         pixel_count(image.size)));
+    }
     if (const auto& samples = image.settings.samples) {
         entries.emplace_back("Sahl:Samples", fmt::format("{}..{}", samples->begin, samples->end));
     }

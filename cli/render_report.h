@@ -27,6 +27,13 @@ struct Rendered {
     std::uint64_t clamped = 0;
 };
 
+constexpr std::uint64_t pixel_count(const Resolution& size) {
+    return std::uint64_t(size.width) * std::uint64_t(size.height);
+}
+
+/// Whether rendering was interrupted before all pixels were finished.
+bool is_partial(const Rendered& image);
+
 /// The first event of `--json`.
 void print_start(const RenderOptions& options, const RenderSettings& settings, const std::vector<int>& depths,
                  const std::string& camera, const DeviceInfo& device, const BvhStatistics& bvh);

@@ -73,4 +73,8 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Ends the process with `status` at once, whatever its threads do, and removes what OpenCL drivers
+/// keep in temporary files for it. For a process that is interrupted: nothing is destroyed in order.
+[[noreturn]] void exit_at_once(int status);
+
 }  // namespace sahl

@@ -8,6 +8,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/device/device.h"
 
 namespace sahl {
 namespace {
@@ -106,7 +108,8 @@ void remove_stale_folders(const fs::path& parent) {
         struct stat status {};
         if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) || status.st_uid != geteuid())
             continue;
-        const int file = open((folder / lock_name).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
+        // Its process may have died before it made the lock; one that lives takes another folder then.
+        const int file = open((folder / lock_name).c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
         if (file < 0) continue;
         std::error_code ignored;
         if (flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, ignored);
@@ -122,6 +125,9 @@ fs::path temporary_folder() {
     refuse(set != nullptr ? set : "/tmp", error.message());
 }
 
+/// The private folder's path, for exit_at_once(), which any thread may call at any time.
+std::atomic<const char*> folder_in_use = nullptr;
+
 const PrivateFolder& private_folder() {
     static const PrivateFolder folder(temporary_folder());
     return folder;
@@ -133,12 +139,23 @@ void prepare_pocl(int threads) {
     static std::once_flag once;
     std::call_once(once, [threads] {
         remove_stale_folders(temporary_folder());
-        setenv("POCL_CACHE_DIR", private_folder().path().c_str(), 1);
+        folder_in_use = private_folder().path().c_str();
+        setenv("POCL_CACHE_DIR", folder_in_use, 1);
         if (threads > 0) setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
     });
 }
 
 const fs::path& pocl_folder() { return private_folder().path(); }
+
+void exit_at_once(int status) {
+    const char* folder = folder_in_use;
+    if (folder == nullptr) _exit(status);
+    // While a compiler works in the folder it cannot be removed, and PoCL aborts when its folder goes.
+    // Another program in this process's place ends all threads at one moment.
+    execl("/bin/sh", "sh", "-c", "/bin/rm -rf -- \"$0\"; exit \"$1\"", folder, std::to_string(status).c_str(),
+          nullptr);
+    _exit(status);  // the next process removes the folder
+}
 
 std::size_t count_compiled_kernels() {
     std::size_t count = 0;

@@ -100,6 +100,13 @@ void Film::merge(const Film& other) {
     clamped_ += other.clamped_;
 }
 
+void Film::clear(std::span<const std::uint32_t> pixels) {
+    for (const std::uint32_t pixel : pixels) {
+        const auto sums = sums_.subspan(3 * std::size_t{pixel}, 3);
+        std::fill(sums.begin(), sums.end(), 0);
+    }
+}
+
 Image Film::resolve(int samples) const {
     Image image{
         .width = width_, .height = height_, .channels = 3, .pixels = std::vector<float>(sums_.size())};

@@ -46,6 +46,9 @@ public:
     /// of the whole. Throws Error(usage) for another size.
     void merge(const Film& other);
 
+    /// Makes these pixels black again, whatever was added to them. The counts stay.
+    void clear(std::span<const std::uint32_t> pixels);
+
     /// The sums divided by `samples` (a pixel).
     Image resolve(int samples) const;
 

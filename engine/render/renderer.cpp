@@ -92,7 +92,7 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 const BvhStatistics& Renderer::bvh_statistics() const { return impl_->device_scene.bvh_statistics; }
 
 RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
-                                  const ProgressCallback& progress) {
+                                  const ProgressCallback& progress, const std::stop_token& stop) {
     const Crop crop = crop_of(settings);
     if (film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
         throw Error(ExitCode::usage, "the film must have the crop's size");
@@ -103,7 +103,7 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
     RayQueues queues(impl_->device, impl_->capacity(settings, samples), settings.depth,
                      impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress);
+    RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress, stop);
     impl_->program.store_binary();  // now that each kernel has been compiled
     return statistics;
 }

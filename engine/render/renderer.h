@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "engine/accel/bvh.h"
@@ -49,6 +50,7 @@ struct GenerationCounts {
 struct RenderStatistics {
     std::vector<GenerationCounts> generations;  ///< [0]: camera rays
     double seconds = 0;                         ///< from the first launch to the last contribution
+    std::uint64_t finished_pixels = 0;          ///< all, unless it was stopped
 };
 
 /// Called with the camera samples finished so far and their whole number, after each wave.
@@ -66,8 +68,10 @@ public:
     const BvhStatistics& bvh_statistics() const;
 
     /// Adds the image of `settings` into `film` (of the crop's size).
-    RenderStatistics render(const RenderSettings& settings, Film& film,
-                            const ProgressCallback& progress = {});
+    /// A requested `stop` is heard within a generation of one batch. The pixels that are finished by then
+    /// are in the film as in the whole image, of the others nothing is: in a new film they are black.
+    RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {},
+                            const std::stop_token& stop = {});
 
     /// What `aovs` ask for, of the camera, the crop and the samples of `settings`.
     std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs);

@@ -9,6 +9,12 @@
 namespace sahl {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 /// A batch that waits to be traced.
 struct WaitingBatch {
     std::uint32_t slot;  ///< in RayQueues::batches
@@ -93,6 +99,15 @@ private:
     std::uint32_t rays_per_item_;
 };
 
+/// Takes the pixels of a wave whose ray trees are not finished out of the film. Which those are only
+/// the kernel knows: it generates them once more.
+void abandon(GenerationLauncher& launcher, const device::CameraConstants& camera,
+             const device::WaveConstants& wave, RayBatch& scratch, Film& film) {
+    launcher.generate(camera, wave, scratch);
+    const auto pixels = scratch.ids.map<std::uint32_t>(MapMode::read, wave.count);
+    film.clear({pixels.data(), wave.count});
+}
+
 }  // namespace
 
 device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop) {
@@ -121,8 +136,8 @@ WavefrontKernels::WavefrontKernels(Program& program)
 
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
                              const RenderSettings& settings, const Crop& crop, Film& film,
-                             const ProgressCallback& progress) {
-    const auto start = std::chrono::steady_clock::now();
+                             const ProgressCallback& progress, const std::stop_token& stop) {
+    const auto start = Clock::now();
     RayQueues& queues = wavefront.queues;
     GenerationLauncher launcher(wavefront);
     device::WaveConstants wave = wave_constants(settings, crop);
@@ -148,6 +163,13 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
         launcher.generate(camera, wave, queues.batches[stack.back().slot]);
 
         while (!stack.empty()) {
+            if (stop.stop_requested()) {
+                add_to_film(pending, queues.capacity, film);
+                abandon(launcher, camera, wave, queues.batches.front(), film);
+                statistics.finished_pixels = done / wave.samples;
+                statistics.seconds = seconds_since(start);
+                return statistics;
+            }
             const WaitingBatch batch = stack.back();
             stack.pop_back();
             const bool spawn = batch.generation < depth;
@@ -186,7 +208,8 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
         }
     }
     add_to_film(pending, queues.capacity, film);
-    statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    statistics.finished_pixels = samples / wave.samples;
+    statistics.seconds = seconds_since(start);
     return statistics;
 }
 

@@ -28,9 +28,9 @@ struct Wavefront {
 device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop);
 
 /// Generates all camera samples of `settings`, wave by wave, follows their ray trees and adds every
-/// contribution to `film`.
+/// contribution to `film`. Looks at `stop` before each generation, see Renderer::render.
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
                              const RenderSettings& settings, const Crop& crop, Film& film,
-                             const ProgressCallback& progress);
+                             const ProgressCallback& progress, const std::stop_token& stop);
 
 }  // namespace sahl

@@ -17,10 +17,14 @@ std::string environment(const char* name) {
 
 }  // namespace
 
-ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+std::vector<std::string> sahl_command(const std::vector<std::string>& arguments) {
     std::vector<std::string> command{environment("SAHL_BINARY")};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    return run_process(command, options);
+    return command;
+}
+
+ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+    return run_process(sahl_command(arguments), options);
 }
 
 ProcessResult run_sahl_in(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {

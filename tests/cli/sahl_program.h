@@ -12,7 +12,10 @@
 
 namespace sahl::tests {
 
-/// Runs the program that the environment variable SAHL_BINARY names.
+/// The command line of the program that the environment variable SAHL_BINARY names.
+std::vector<std::string> sahl_command(const std::vector<std::string>& arguments);
+
+/// Runs that program.
 ProcessResult run_sahl(const std::vector<std::string>& arguments, const ProcessOptions& options = {});
 
 /// The same in `folder`.

@@ -112,17 +112,17 @@ void drain(int& end, std::string& text) {
 
 }  // namespace
 
-ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options) {
+struct Process::Impl {
     Pipe out;
     Pipe err;
-    if (options.broken_pipe) Pipe::close_end(out.read_end);
-    const pid_t child = spawn(command, options, out, err);
-    Pipe::close_end(out.write_end);
-    Pipe::close_end(err.write_end);
-
+    pid_t child = -1;
+    std::chrono::steady_clock::time_point deadline;
     ProcessResult result;
-    const auto deadline = std::chrono::steady_clock::now() + options.timeout;
-    while (out.read_end >= 0 || err.read_end >= 0) {
+
+    /// Takes in what the process has written; waits for something, for a second after it was killed.
+    /// False when there is nothing more to come.
+    bool read_some() {
+        if (out.read_end < 0 && err.read_end < 0) return false;
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
             deadline - std::chrono::steady_clock::now());
         if (left.count() <= 0 && !result.timed_out) {
@@ -131,21 +131,58 @@ ProcessResult run_process(const std::vector<std::string>& command, const Process
         }
         // poll() passes over closed ends (-1).
         std::array<pollfd, 2> ends{pollfd{out.read_end, POLLIN, 0}, pollfd{err.read_end, POLLIN, 0}};
-        if (poll(ends.data(), ends.size(), result.timed_out ? 1000 : static_cast<int>(left.count()) + 1) <=
-            0) {
+        const int timeout = result.timed_out ? 1000 : static_cast<int>(left.count()) + 1;
+        if (poll(ends.data(), ends.size(), timeout) <= 0) {
             // Killed, and still nobody closes the pipes: a grandchild holds them.
-            if (result.timed_out) break;
-            continue;
+            return !result.timed_out;
         }
         if (ends[0].revents != 0) drain(out.read_end, result.out);
         if (ends[1].revents != 0) drain(err.read_end, result.err);
+        return true;
     }
 
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    void wait() {
+        int status = 0;
+        while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+        }
+        child = -1;
+        result.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     }
-    result.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-    return result;
+};
+
+Process::Process(const std::vector<std::string>& command, const ProcessOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+    if (options.broken_pipe) Pipe::close_end(impl_->out.read_end);
+    impl_->child = spawn(command, options, impl_->out, impl_->err);
+    impl_->deadline = std::chrono::steady_clock::now() + options.timeout;
+    Pipe::close_end(impl_->out.write_end);
+    Pipe::close_end(impl_->err.write_end);
+}
+
+Process::~Process() {
+    if (impl_->child < 0) return;
+    kill(impl_->child, SIGKILL);
+    impl_->wait();
+}
+
+void Process::send_signal(int number) const { kill(impl_->child, number); }
+
+bool Process::wait_for_output() {
+    while (impl_->result.out.find('\n') == std::string::npos) {
+        if (!impl_->read_some()) return false;
+    }
+    return true;
+}
+
+ProcessResult Process::finish() {
+    while (impl_->read_some()) {
+    }
+    impl_->wait();
+    return std::move(impl_->result);
+}
+
+ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options) {
+    return Process(command, options).finish();
 }
 
 }  // namespace sahl::tests

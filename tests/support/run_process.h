@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,8 +30,27 @@ struct ProcessResult {
     std::string err;
 };
 
-/// Runs `command` (a path first) to its end, or kills it after the timeout.
-/// Throws std::system_error when it cannot be started.
+/// A program that runs. Killed and waited for at destruction if it has not been finished.
+class Process {
+public:
+    /// Starts `command` (a path first). Throws std::system_error when it cannot be started.
+    explicit Process(const std::vector<std::string>& command, const ProcessOptions& options = {});
+    ~Process();
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    void send_signal(int number) const;
+    /// Reads what it writes until a whole line of standard output is there; false at its end.
+    bool wait_for_output();
+    /// Waits for its end, or kills it `timeout` after the start.
+    ProcessResult finish();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Runs `command` to its end.
 ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options = {});
 
 }  // namespace sahl::tests
