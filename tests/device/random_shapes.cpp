@@ -8,7 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "tests/support/oracle/build_scene.h"
+#include "engine/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

@@ -8,9 +8,9 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "engine/oracle/oracle.h"
 #include "engine/scene/scene.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/oracle.h"
 
 namespace sahl::tests {
 

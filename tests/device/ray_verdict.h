@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/oracle/oracle.h"
 #include "tests/device/random_shapes.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/oracle.h"
 
 namespace sahl::tests {
 

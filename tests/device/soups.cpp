@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "tests/support/oracle/build_scene.h"
+#include "engine/oracle/build_scene.h"
 
 namespace sahl::tests {
 

@@ -2,16 +2,15 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
+#include "engine/oracle/camera.h"
+#include "engine/render/camera_constants.h"
 #include "kernels/device_types.h"
 #include "tests/support/kernel_runner.h"
-#include "tests/support/oracle/render.h"
 
 namespace sahl::tests {
 namespace {
@@ -25,28 +24,6 @@ kernel void pixels(const uint width, const uint height, global uint2* out, const
     TEST_FOR_EACH(i, count) { out[i] = crop_pixel(i, width, height); }
 }
 )";
-
-/// A vector as the floats nearest to it and what they lack.
-void split(const dvec3& v, float (&value)[3], float (&low)[3]) {
-    for (int k = 0; k < 3; ++k) {
-        value[k] = static_cast<float>(v[k]);
-        low[k] = static_cast<float>(v[k] - static_cast<double>(value[k]));
-    }
-}
-
-device::CameraConstants constants(const Camera& camera, const Resolution& resolution) {
-    const dvec3 back = glm::normalize(camera.eye - camera.look_at);
-    const dvec3 right = glm::normalize(glm::cross(camera.up, back));
-    const double pixel = 2 * std::tan(camera.fov_y * std::numbers::pi / 360) / resolution.height;
-    device::CameraConstants result{};
-    split(camera.eye, result.eye, result.eye_low);
-    split(-back, result.forward, result.forward_low);
-    split(right * pixel, result.step_x, result.step_x_low);
-    split(glm::cross(back, right) * -pixel, result.step_y, result.step_y_low);
-    result.half_width = static_cast<float>(resolution.width) / 2;
-    result.half_height = static_cast<float>(resolution.height) / 2;
-    return result;
-}
 
 }  // namespace
 
@@ -82,7 +59,7 @@ TEST_CASE("camera rays go where the oracle's go") {
         const std::size_t count = wave.count;
         Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
         Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
-        runner.run("generate", count, constants(camera, resolution), wave, rays, ids);
+        runner.run("generate", count, camera_constants(camera, resolution), wave, rays, ids);
         const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
         const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
         const auto vector = [&](std::size_t first, std::size_t i) {
@@ -116,7 +93,7 @@ TEST_CASE("a crop and a later part of the samples get the rays of the whole imag
         const std::size_t count = wave.count;
         Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
         Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
-        runner.run("generate", count, constants(camera, resolution), wave, rays, ids);
+        runner.run("generate", count, camera_constants(camera, resolution), wave, rays, ids);
         const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
         const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
         std::vector<std::array<float, 3>> result(std::size_t{wave.crop_width} * wave.crop_height * kSpp);
@@ -147,7 +124,7 @@ TEST_CASE("samples are numbered beyond 32 bits") {
     const device::WaveConstants wave{0, 1, 10, 16384, 0, 0, 1024, 1024, 0, 0, 0, 16384};
     Buffer rays(runner.device(), SAHL_RAY_FLOATS * std::size_t{wave.count} * 4, "rays");
     Buffer ids(runner.device(), SAHL_RAY_UINTS * std::size_t{wave.count} * 4, "ids");
-    runner.run("generate", wave.count, constants({}, {1024, 1024}), wave, rays, ids);
+    runner.run("generate", wave.count, camera_constants({}, {1024, 1024}), wave, rays, ids);
     for (const std::uint32_t pixel : KernelRunner::download<std::uint32_t>(ids, wave.count))
         CHECK(pixel == 256 * 1024);
 }

@@ -8,9 +8,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/device/soups.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

@@ -12,10 +12,10 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/device/ray_verdict.h"
 #include "tests/device/soups.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

@@ -10,11 +10,11 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/oracle/build_scene.h"
+#include "engine/oracle/oracle.h"
 #include "tests/device/closed_meshes.h"
 #include "tests/device/random_shapes.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/build_scene.h"
-#include "tests/support/oracle/oracle.h"
 
 namespace sahl::tests {
 namespace {

@@ -5,9 +5,9 @@
 #include <iomanip>
 #include <vector>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/device/soups.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

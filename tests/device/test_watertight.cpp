@@ -8,9 +8,9 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/device/closed_meshes.h"
 #include "tests/device/traced_rays.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

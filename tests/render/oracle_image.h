@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/render/rendered.h"
-#include "tests/support/oracle/render.h"
+#include "tests/support/oracle_render.h"
 
 namespace sahl::tests {
 

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/render/renderer.h"
-#include "tests/support/oracle/render.h"
+#include "tests/support/oracle_render.h"
 
 namespace sahl::tests {
 

@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/render/oracle_image.h"
 #include "tests/render/rendered.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

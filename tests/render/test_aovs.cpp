@@ -6,9 +6,10 @@
 #include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
-#include "tests/render/every_feature.h"
+#include "engine/oracle/build_scene.h"
+#include "engine/oracle/shading.h"
+#include "engine/self_test/every_feature.h"
 #include "tests/render/rendered.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {
@@ -54,7 +55,7 @@ int wrong_pixels(const Scene& scene, const RenderSettings& settings, const Crop&
             const oracle::Ray ray = oracle::camera_ray(camera, settings.resolution, x + 0.5, y + 0.5);
             const auto hit = reference.closest_hit(ray);
             const auto albedo_of = [&](const oracle::Hit& h) {
-                return reference.color_at(h, &Material::diffuse, &MaterialTextures::diffuse);
+                return oracle::colors_at(reference.scene(), h).diffuse;
             };
             bool edge = false;
             for (const double side : {-0.01, 0.01}) {

@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/render/every_feature.h"
+#include "engine/oracle/build_scene.h"
+#include "engine/self_test/every_feature.h"
 #include "tests/render/oracle_image.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {

@@ -5,8 +5,9 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "tests/support/oracle/build_scene.h"
-#include "tests/support/oracle/oracle.h"
+#include "engine/oracle/build_scene.h"
+#include "engine/oracle/oracle.h"
+#include "engine/oracle/shading.h"
 
 namespace sahl::oracle {
 namespace {
@@ -101,7 +102,7 @@ TEST_CASE("oracle: every textured term has its own texture", "[oracle]") {
     CHECK(color(scene, down_at(0.3, 0.3), 1).x == Approx(11111));
     const Oracle oracle(scene);
     const auto hit = oracle.closest_hit(down_at(0.3, 0.3));
-    CHECK(oracle.color_at(*hit, &Material::diffuse, &MaterialTextures::diffuse).x == Approx(10));
+    CHECK(colors_at(scene, *hit).diffuse.x == Approx(10));
 }
 
 TEST_CASE("oracle: the outside index counts as well as the inside one", "[oracle]") {

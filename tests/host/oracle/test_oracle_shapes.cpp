@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/support/oracle/build_scene.h"
-#include "tests/support/oracle/oracle.h"
+#include "engine/oracle/build_scene.h"
+#include "engine/oracle/oracle.h"
 
 namespace sahl::oracle {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "tests/support/oracle/build_scene.h"
-#include "tests/support/oracle/render.h"
+#include "engine/oracle/build_scene.h"
+#include "tests/support/oracle_render.h"
 
 namespace sahl::oracle {
 namespace {

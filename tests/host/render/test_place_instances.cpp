@@ -5,10 +5,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/error.h"
+#include "engine/oracle/build_scene.h"
+#include "engine/oracle/shape.h"
 #include "engine/render/host_scene.h"
 #include "engine/render/place_instances.h"
-#include "tests/support/oracle/build_scene.h"
-#include "tests/support/oracle/shape.h"
 
 namespace sahl::tests {
 namespace {

@@ -1,11 +1,11 @@
-#include "tests/render/every_feature.h"
+#include "engine/self_test/every_feature.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "tests/support/oracle/build_scene.h"
+#include "engine/oracle/build_scene.h"
 
-namespace sahl::tests {
+namespace sahl {
 namespace {
 
 using glm::dmat4;
@@ -126,4 +126,4 @@ Scene every_feature() {
     return scene;
 }
 
-}  // namespace sahl::tests
+}  // namespace sahl

@@ -10,8 +10,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "engine/oracle/shape.h"
 #include "engine/scene/scene.h"
-#include "tests/support/oracle/shape.h"
 
 namespace sahl::oracle {
 
@@ -51,6 +51,8 @@ struct PathRecord {
     std::uint64_t signature = 0;  ///< hash of all discrete decisions of the ray tree in order
 };
 
+struct SurfaceColors;
+
 class Oracle {
 public:
     /// Keeps a reference to `scene`.
@@ -60,6 +62,9 @@ public:
     /// `start`: what the ray starts on.
     std::optional<Hit> closest_hit(const Ray& ray, double t_min = 0, double t_max = infinity,
                                    const SurfaceId& start = {}) const;
+
+    /// The crossing with surface `id` alone that is nearest to distance `t`; none where the ray misses it.
+    std::optional<Hit> hit_near(const Ray& ray, const SurfaceId& id, double t) const;
 
     /// The part of the light that passes 0 < t < t_max: 0 behind an opaque surface, else the
     /// product of `transmission` over all surfaces crossed; `crossed` counts those.
@@ -75,19 +80,13 @@ public:
         return scene_.materials[scene_.primitives[hit.id.primitive].material];
     }
 
-    /// The material's colour `color` with its texture where the hit is.
-    glm::dvec3 color_at(const Hit& hit, glm::vec3 Material::*color,
-                        std::uint32_t MaterialTextures::*texture) const;
-
     const Scene& scene() const { return scene_; }
 
 private:
     struct Branch;
     void trace(const Branch& branch, int depth, PathRecord& record) const;
-    glm::dvec3 direct_light(const Branch& branch, const Hit& hit, const glm::dvec3& ns,
+    glm::dvec3 direct_light(const Branch& branch, const Hit& hit, const SurfaceColors& colors,
                             PathRecord& record) const;
-    glm::dvec3 color_at(const Hit& hit, glm::vec3 Material::*color, std::uint32_t MaterialTextures::*texture,
-                        PathRecord& record) const;
 
     const Scene& scene_;
     std::vector<PlacedShape> shapes_;

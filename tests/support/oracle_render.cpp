@@ -1,10 +1,9 @@
-#include "tests/support/oracle/render.h"
+#include "tests/support/oracle_render.h"
 
 #include <cmath>
 
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 namespace sahl::oracle {
 namespace {
@@ -26,18 +25,6 @@ bool decides_otherwise_nearby(const Oracle& oracle, const Ray& ray, int depth, s
 }
 
 }  // namespace
-
-Ray camera_ray(const Camera& camera, Resolution resolution, double x, double y) {
-    const dvec3 backward = glm::normalize(camera.eye - camera.look_at);
-    const dvec3 right = glm::normalize(glm::cross(camera.up, backward));
-    const dvec3 up = glm::cross(backward, right);
-    const double width = resolution.width;
-    const double height = resolution.height;
-    const double half_height = std::tan(glm::radians(camera.fov_y) / 2);
-    const double half_width = half_height * width / height;
-    return {camera.eye, glm::normalize(half_width * (2 * x / width - 1) * right +
-                                       half_height * (1 - 2 * y / height) * up - backward)};
-}
 
 Rendering render(const Oracle& oracle, Resolution resolution, int depth, EdgeSearch search) {
     Rendering result;

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "tests/support/oracle/shape.h"
+#include "engine/oracle/shape.h"
 
 namespace sahl::oracle {
 

@@ -1,4 +1,4 @@
-#include "tests/support/oracle/texture.h"
+#include "engine/oracle/texture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "tests/support/oracle/oracle.h"
+#include "engine/oracle/camera.h"
+#include "engine/oracle/oracle.h"
 
 namespace sahl::oracle {
 
@@ -20,9 +21,6 @@ struct Rendering {
     std::vector<std::uint8_t> near_edge;  ///< per pixel, empty when not searched
     std::size_t near_edge_count = 0;
 };
-
-/// The ray through image position (x, y) in pixels, y down; unit direction.
-Ray camera_ray(const Camera& camera, Resolution resolution, double x, double y);
 
 /// One ray through each pixel's centre. A pixel is near an edge when a ray whose direction is
 /// turned by 1e-4 rad towards one of four diagonals takes another decision anywhere in its tree:

@@ -1,4 +1,4 @@
-#include "tests/support/oracle/build_scene.h"
+#include "engine/oracle/build_scene.h"
 
 #include <string>
 

@@ -7,8 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "tests/support/oracle/crossings.h"
-#include "tests/support/oracle/shape.h"
+#include "engine/oracle/crossings.h"
+#include "engine/oracle/shape.h"
 
 namespace sahl::oracle {
 namespace {

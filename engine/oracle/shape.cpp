@@ -1,4 +1,4 @@
-#include "tests/support/oracle/shape.h"
+#include "engine/oracle/shape.h"
 
 #include <algorithm>
 #include <cmath>
