@@ -1,43 +1,15 @@
 #include "engine/render/renderer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 
-#include <glm/geometric.hpp>
-
 #include "engine/core/error.h"
+#include "engine/render/camera_constants.h"
 #include "engine/render/trace_aovs.h"
-#include "engine/render/two_floats.h"
 #include "engine/render/wavefront.h"
 
 namespace sahl {
 namespace {
-
-void split3(float (&high)[3], float (&low)[3], const glm::dvec3& from) {
-    for (int k = 0; k < 3; ++k) {
-        const TwoFloats parts = split(from[k]);
-        high[k] = parts.high;
-        low[k] = parts.low;
-    }
-}
-
-/// The camera's frame and pixel steps: w = norm(eye - look_at), u = norm(up x w), v = w x u.
-device::CameraConstants camera_constants(const Camera& camera, const Resolution& resolution) {
-    const glm::dvec3 w = glm::normalize(camera.eye - camera.look_at);
-    const glm::dvec3 u = glm::normalize(glm::cross(camera.up, w));
-    const glm::dvec3 v = glm::cross(w, u);
-    const double pixel = 2 * std::tan(camera.fov_y * std::numbers::pi / 360) / resolution.height;
-    device::CameraConstants out{};
-    split3(out.eye, out.eye_low, camera.eye);
-    split3(out.forward, out.forward_low, -w);
-    split3(out.step_x, out.step_x_low, u * pixel);
-    split3(out.step_y, out.step_y_low, v * -pixel);
-    out.half_width = static_cast<float>(resolution.width) / 2;
-    out.half_height = static_cast<float>(resolution.height) / 2;
-    return out;
-}
 
 /// The pixels that `settings` ask for.
 Crop crop_of(const RenderSettings& settings) {
@@ -68,7 +40,7 @@ struct Renderer::Impl {
         : device(on),
           cameras(scene.cameras),
           device_scene(make_device_scene(on, scene)),
-          program(on, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}),
+          program(build_wavefront_program(on)),
           kernels(program) {}
 
     /// Rays of a batch for a wave of `samples` or more waves.
@@ -115,7 +87,9 @@ std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std:
     const std::uint64_t pixels = pixel_count(crop);
     RayQueues queues(impl_->device, impl_->capacity(settings, pixels), 0, 0);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    return trace_aovs(wavefront, camera, settings, crop, aovs);
+    Program program = build_aov_program(impl_->device);
+    Kernel describe = program.kernel("describe");
+    return trace_aovs(wavefront, describe, camera, settings, crop, aovs);
 }
 
 }  // namespace sahl

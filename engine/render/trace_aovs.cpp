@@ -48,16 +48,16 @@ std::vector<AovImage> blank_images(std::span<const Aov> aovs, std::size_t pixels
 
 }  // namespace
 
-std::vector<AovImage> trace_aovs(Wavefront& wavefront, const device::CameraConstants& camera,
-                                 const RenderSettings& settings, const Crop& crop,
-                                 std::span<const Aov> aovs) {
+Program build_aov_program(Device& device) { return {device, {"aov.cl"}}; }
+
+std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
+                                 const device::CameraConstants& camera, const RenderSettings& settings,
+                                 const Crop& crop, std::span<const Aov> aovs) {
     Device& device = wavefront.device;
     const DeviceScene& scene = wavefront.scene;
     RayQueues& queues = wavefront.queues;
     RayBatch& batch = queues.batches.front();
     const std::size_t capacity = queues.capacity;
-    Program program(device, {"aov.cl"});
-    Kernel describe = program.kernel("describe");
     Buffer values(device, SAHL_AOV_FLOATS * capacity * sizeof(float), "AOV values");
     Buffer ids(device, SAHL_AOV_UINTS * capacity * sizeof(std::uint32_t), "AOV ids");
 
@@ -72,10 +72,8 @@ std::vector<AovImage> trace_aovs(Wavefront& wavefront, const device::CameraConst
         wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(capacity, pixels - done));
         const std::uint32_t items = (wave.count + device.rays_per_item() - 1) / device.rays_per_item();
         const Launch launch{items, 0, wave.count};
-        wavefront.kernels.generate.launch(launch, camera, wave, batch.rays, batch.ids, queues.capacity);
-        wavefront.kernels.intersect.launch(launch, scene.nodes, scene.leaves, scene.polygon_vertices,
-                                           scene.instances, scene.constants, batch.rays, batch.ids,
-                                           queues.hits, queues.hit_ids, queues.capacity, wave.count);
+        launch_generate(wavefront, camera, wave, batch);
+        launch_intersect(wavefront, {0, wave.count, 0});
         describe.launch(launch, scene.primitives, scene.shape_data, scene.instances, scene.materials,
                         scene.textures, camera, batch.rays, queues.hits, queues.hit_ids, values, ids,
                         queues.capacity, wave.count);

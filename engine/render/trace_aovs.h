@@ -9,8 +9,12 @@
 
 namespace sahl {
 
+/// Its kernel "describe" turns hits into AOVs.
+Program build_aov_program(Device& device);
+
 /// `aovs` of sample 0 of the crop's pixels, in their order.
-std::vector<AovImage> trace_aovs(Wavefront& wavefront, const device::CameraConstants& camera,
-                                 const RenderSettings& settings, const Crop& crop, std::span<const Aov> aovs);
+std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
+                                 const device::CameraConstants& camera, const RenderSettings& settings,
+                                 const Crop& crop, std::span<const Aov> aovs);
 
 }  // namespace sahl

@@ -15,13 +15,6 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A batch that waits to be traced.
-struct WaitingBatch {
-    std::uint32_t slot;  ///< in RayQueues::batches
-    std::uint32_t count;
-    std::uint32_t generation;
-};
-
 /// Contributions on their way to the film: ready once the commands queued before them have run.
 struct PendingContributions {
     Mapping<float> light;
@@ -41,69 +34,23 @@ void add_to_film(std::optional<PendingContributions>& pending, std::uint32_t cap
     pending.reset();
 }
 
-/// Launches the kernels of one generation on a batch of rays.
-class GenerationLauncher {
-public:
-    explicit GenerationLauncher(Wavefront& wavefront)
-        : kernels_(wavefront.kernels),
-          scene_(wavefront.scene),
-          queues_(wavefront.queues),
-          rays_per_item_(wavefront.device.rays_per_item()) {}
-
-    void generate(const device::CameraConstants& camera, const device::WaveConstants& wave, RayBatch& batch) {
-        kernels_.generate.launch(per_ray(0, wave.count), camera, wave, batch.rays, batch.ids,
-                                 queues_.capacity);
-    }
-
-    /// `next` may be the batch itself: children are staged. Both `next` and `waiting` are written
-    /// only where `spawn`.
-    void trace(const WaitingBatch& in_work, bool spawn, Contributions& out, RayBatch& next,
-               RayBatch& waiting) {
-        const RayBatch& batch = queues_.batches[in_work.slot];
-        RayQueues& q = queues_;
-        const std::uint32_t count = in_work.count;
-        const std::uint32_t blocks = (count + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
-        const Launch rays = per_ray(in_work.generation, count);
-        const Launch block_launch{blocks, in_work.generation, count};
-
-        kernels_.intersect.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices,
-                                  scene_.instances, scene_.constants, batch.rays, batch.ids, q.hits,
-                                  q.hit_ids, q.capacity, count);
-        kernels_.shade.launch(rays, scene_.primitives, scene_.shape_data, scene_.instances, scene_.materials,
-                              scene_.textures, scene_.lights, scene_.constants, batch.rays, batch.ids, q.hits,
-                              q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light, q.children,
-                              q.child_ids, q.outcomes, q.capacity, count, spawn ? 1U : 0U);
-        kernels_.shadow.launch(rays, scene_.nodes, scene_.leaves, scene_.polygon_vertices, scene_.instances,
-                               scene_.primitives, scene_.materials, scene_.lights, scene_.constants,
-                               q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
-                               q.capacity, count);
-        kernels_.count_children.launch(block_launch, q.outcomes, q.block_counts, q.block_shadow_rays, count,
-                                       blocks);
-        kernels_.sum_children.launch({1, in_work.generation, blocks}, q.block_counts, q.block_shadow_rays,
-                                     q.totals, blocks);
-        if (spawn) {
-            kernels_.compact.launch(block_launch, q.children, q.child_ids, q.outcomes, q.block_counts,
-                                    next.rays, next.ids, waiting.rays, waiting.ids, q.capacity, count,
-                                    blocks);
-        }
-    }
-
-private:
-    Launch per_ray(std::uint32_t generation, std::uint32_t count) const {
-        return {(count + rays_per_item_ - 1) / rays_per_item_, generation, count};
-    }
-
-    WavefrontKernels& kernels_;
-    const DeviceScene& scene_;
-    RayQueues& queues_;
-    std::uint32_t rays_per_item_;
-};
+/// One generation of a batch. `next` may be the batch itself: children are staged. Both `next` and
+/// `waiting` are written only where `spawn`.
+void trace_generation(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out,
+                      RayBatch& next, RayBatch& waiting) {
+    launch_intersect(wavefront, in_work);
+    launch_shade(wavefront, in_work, spawn, out);
+    launch_shadow(wavefront, in_work, out);
+    launch_count_children(wavefront, in_work);
+    launch_sum_children(wavefront, in_work);
+    if (spawn) launch_compact(wavefront, in_work, next, waiting);
+}
 
 /// Takes the pixels of a wave whose ray trees are not finished out of the film. Which those are only
 /// the kernel knows: it generates them once more.
-void abandon(GenerationLauncher& launcher, const device::CameraConstants& camera,
-             const device::WaveConstants& wave, RayBatch& scratch, Film& film) {
-    launcher.generate(camera, wave, scratch);
+void abandon(Wavefront& wavefront, const device::CameraConstants& camera, const device::WaveConstants& wave,
+             RayBatch& scratch, Film& film) {
+    launch_generate(wavefront, camera, wave, scratch);
     const auto pixels = scratch.ids.map<std::uint32_t>(MapMode::read, wave.count);
     film.clear({pixels.data(), wave.count});
 }
@@ -125,21 +72,11 @@ device::WaveConstants wave_constants(const RenderSettings& settings, const Crop&
     return wave;
 }
 
-WavefrontKernels::WavefrontKernels(Program& program)
-    : generate(program.kernel("generate")),
-      intersect(program.kernel("intersect")),
-      shade(program.kernel("shade")),
-      shadow(program.kernel("shadow")),
-      count_children(program.kernel("count_children")),
-      sum_children(program.kernel("sum_children")),
-      compact(program.kernel("compact")) {}
-
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
                              const RenderSettings& settings, const Crop& crop, Film& film,
                              const ProgressCallback& progress, const std::stop_token& stop) {
     const auto start = Clock::now();
     RayQueues& queues = wavefront.queues;
-    GenerationLauncher launcher(wavefront);
     device::WaveConstants wave = wave_constants(settings, crop);
     const std::uint64_t samples = std::uint64_t{wave.crop_width} * wave.crop_height * wave.samples;
     const auto depth = static_cast<std::uint32_t>(settings.depth);
@@ -160,12 +97,12 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
         wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(queues.capacity, samples - done));
         stack.push_back({free_slots.back(), wave.count, 0});
         free_slots.pop_back();
-        launcher.generate(camera, wave, queues.batches[stack.back().slot]);
+        launch_generate(wavefront, camera, wave, queues.batches[stack.back().slot]);
 
         while (!stack.empty()) {
             if (stop.stop_requested()) {
                 add_to_film(pending, queues.capacity, film);
-                abandon(launcher, camera, wave, queues.batches.front(), film);
+                abandon(wavefront, camera, wave, queues.batches.front(), film);
                 statistics.finished_pixels = done / wave.samples;
                 statistics.seconds = seconds_since(start);
                 return statistics;
@@ -176,7 +113,7 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
             Contributions& out = queues.contributions[side];
             RayBatch& next = queues.batches[batch.slot];
             RayBatch& waiting = queues.batches[spawn ? free_slots.back() : batch.slot];
-            launcher.trace(batch, spawn, out, next, waiting);
+            trace_generation(wavefront, batch, spawn, out, next, waiting);
             PendingContributions produced{
                 out.light.enqueue_map<float>(MapMode::read, 3 * std::size_t{queues.capacity}),
                 out.pixels.enqueue_map<std::uint32_t>(MapMode::read, batch.count), batch.count};

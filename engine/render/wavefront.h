@@ -1,28 +1,11 @@
 // The wavefront loop: ray batches, one kernel after the other, generation by generation.
 #pragma once
 
-#include "engine/device/program.h"
 #include "engine/film/film.h"
-#include "engine/render/device_scene.h"
-#include "engine/render/ray_queues.h"
+#include "engine/render/launches.h"
 #include "engine/render/renderer.h"
 
 namespace sahl {
-
-/// The kernels of kernels/*.cl.
-struct WavefrontKernels {
-    explicit WavefrontKernels(Program& program);
-
-    Kernel generate, intersect, shade, shadow, count_children, sum_children, compact;
-};
-
-/// What the loop works with; all of it outlives the loop.
-struct Wavefront {
-    Device& device;
-    WavefrontKernels& kernels;
-    const DeviceScene& scene;
-    RayQueues& queues;
-};
 
 /// All samples of the crop's pixels as a wave; `first` and `count` are still to be filled in.
 device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop);

@@ -1,0 +1,89 @@
+#include "engine/render/launches.h"
+
+namespace sahl {
+namespace {
+
+Launch per_ray(const Device& device, std::uint32_t generation, std::uint32_t count) {
+    return {(count + device.rays_per_item() - 1) / device.rays_per_item(), generation, count};
+}
+
+Launch per_ray(const Wavefront& wavefront, const WaitingBatch& in_work) {
+    return per_ray(wavefront.device, in_work.generation, in_work.count);
+}
+
+Launch per_block(const WaitingBatch& in_work) {
+    return {compact_blocks(in_work.count), in_work.generation, in_work.count};
+}
+
+}  // namespace
+
+Program build_wavefront_program(Device& device) {
+    return {device, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}};
+}
+
+WavefrontKernels::WavefrontKernels(Program& program)
+    : generate(program.kernel("generate")),
+      intersect(program.kernel("intersect")),
+      shade(program.kernel("shade")),
+      shadow(program.kernel("shadow")),
+      count_children(program.kernel("count_children")),
+      sum_children(program.kernel("sum_children")),
+      compact(program.kernel("compact")) {}
+
+void launch_generate(Wavefront& wavefront, const device::CameraConstants& camera,
+                     const device::WaveConstants& wave, RayBatch& out) {
+    wavefront.kernels.generate.launch(per_ray(wavefront.device, 0, wave.count), camera, wave, out.rays,
+                                      out.ids, wavefront.queues.capacity);
+}
+
+void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
+    const DeviceScene& scene = wavefront.scene;
+    RayQueues& q = wavefront.queues;
+    const RayBatch& batch = q.batches[in_work.slot];
+    wavefront.kernels.intersect.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves,
+                                       scene.polygon_vertices, scene.instances, scene.constants, batch.rays,
+                                       batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
+}
+
+void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out) {
+    const DeviceScene& scene = wavefront.scene;
+    RayQueues& q = wavefront.queues;
+    const RayBatch& batch = q.batches[in_work.slot];
+    wavefront.kernels.shade.launch(per_ray(wavefront, in_work), scene.primitives, scene.shape_data,
+                                   scene.instances, scene.materials, scene.textures, scene.lights,
+                                   scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, out.light,
+                                   out.pixels, q.shadow_surfaces, q.shadow_light, q.children, q.child_ids,
+                                   q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
+}
+
+void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
+    const DeviceScene& scene = wavefront.scene;
+    RayQueues& q = wavefront.queues;
+    wavefront.kernels.shadow.launch(
+        per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+        scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids, q.shadow_surfaces,
+        q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
+}
+
+void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {
+    RayQueues& q = wavefront.queues;
+    wavefront.kernels.count_children.launch(per_block(in_work), q.outcomes, q.block_counts,
+                                            q.block_shadow_rays, in_work.count,
+                                            compact_blocks(in_work.count));
+}
+
+void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work) {
+    RayQueues& q = wavefront.queues;
+    const std::uint32_t blocks = compact_blocks(in_work.count);
+    wavefront.kernels.sum_children.launch({1, in_work.generation, blocks}, q.block_counts,
+                                          q.block_shadow_rays, q.totals, blocks);
+}
+
+void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting) {
+    RayQueues& q = wavefront.queues;
+    wavefront.kernels.compact.launch(per_block(in_work), q.children, q.child_ids, q.outcomes, q.block_counts,
+                                     next.rays, next.ids, waiting.rays, waiting.ids, q.capacity,
+                                     in_work.count, compact_blocks(in_work.count));
+}
+
+}  // namespace sahl

@@ -1,0 +1,66 @@
+// The kernels of a wave with their arguments: one function a kernel.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/device/program.h"
+#include "engine/render/device_scene.h"
+#include "engine/render/ray_queues.h"
+#include "kernels/device_types.h"
+
+namespace sahl {
+
+/// Of which WavefrontKernels are made.
+Program build_wavefront_program(Device& device);
+
+/// The kernels of kernels/*.cl.
+struct WavefrontKernels {
+    explicit WavefrontKernels(Program& program);
+
+    Kernel generate, intersect, shade, shadow, count_children, sum_children, compact;
+};
+
+/// What the launches work with; all of it outlives them.
+struct Wavefront {
+    Device& device;
+    WavefrontKernels& kernels;
+    const DeviceScene& scene;
+    RayQueues& queues;
+};
+
+/// A batch that waits to be traced or is in work.
+struct WaitingBatch {
+    std::uint32_t slot;  ///< in RayQueues::batches
+    std::uint32_t count;
+    std::uint32_t generation;
+};
+
+/// Camera rays of a wave.
+void launch_generate(Wavefront& wavefront, const device::CameraConstants& camera,
+                     const device::WaveConstants& wave, RayBatch& out);
+
+/// The batch's hits.
+void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work);
+
+/// Light without shadow test into `out`, shadow surfaces and light; where `spawn`, children.
+void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out);
+
+/// Adds the light that arrives to `out`.
+void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out);
+
+/// The children and shadow rays of each block of parents.
+void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work);
+
+/// The places of each block's children, and the totals.
+void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work);
+
+/// The children into `next`, which may be the batch in work (children are staged), and what it cannot
+/// hold into `waiting`.
+void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting);
+
+/// The parts that parents are compacted by.
+constexpr std::uint32_t compact_blocks(std::uint32_t count) {
+    return (count + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
+}
+
+}  // namespace sahl
