@@ -15,3 +15,4 @@
 #include "engine/scene/load.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/write_scene.h"
+#include "engine/self_test/self_test.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -19,10 +20,12 @@ namespace sahl {
 struct Program::Impl {
     Device& device;
     std::string key;  ///< in the program cache
-    cl::Program program;
+    cl::Program program{};
     bool from_cache = false;
-    std::set<std::string> cached;    ///< kernels whose compiled code is in the cache
-    std::set<std::string> launched;  ///< kernels that have been compiled for this device
+    std::set<std::string> cached{};    ///< kernels whose compiled code is in the cache
+    std::set<std::string> launched{};  ///< kernels that have been compiled for this device
+    bool tested = false;               ///< has passed the self-test
+    bool cached_tested = false;        ///< and the cache says so
 
     ~Impl() { store(); }
     void store() noexcept;
@@ -37,6 +40,29 @@ struct Kernel::Impl {
 };
 
 namespace {
+
+/// Keys of the programs that have passed the self-test in this process: all that is known of them where
+/// there is no cache.
+class PassedPrograms {
+public:
+    bool contains(const std::string& key) {
+        const std::lock_guard lock(mutex_);
+        return keys_.contains(key);
+    }
+    void insert(const std::string& key) {
+        const std::lock_guard lock(mutex_);
+        keys_.insert(key);
+    }
+
+private:
+    std::mutex mutex_;
+    std::set<std::string> keys_;
+};
+
+PassedPrograms& passed_programs() {
+    static PassedPrograms programs;
+    return programs;
+}
 
 /// "model name" and "flags" of the first processor: what a compiler for the host looks at.
 std::string cpu_model() {
@@ -82,8 +108,7 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
 std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
     std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
     if (!more.empty()) options += " " + more;
-    std::shared_ptr<Program::Impl> impl(
-        new Program::Impl{device, cache_key(device, source, options), {}, false, {}, {}});
+    std::shared_ptr<Program::Impl> impl(new Program::Impl{device, cache_key(device, source, options)});
     const std::optional<CachedProgram> cached = load_program(impl->key);
     const auto from_source = [&] { impl->program = build_from_source(device, source, options); };
     if (device.info().is_pocl) {
@@ -95,7 +120,11 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
         impl->from_cache = impl->program() != nullptr;
         if (!impl->from_cache) from_source();
     }
-    if (impl->from_cache) impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
+    if (impl->from_cache) {
+        impl->cached.insert(cached->kernels.begin(), cached->kernels.end());
+        impl->cached_tested = cached->tested;
+    }
+    impl->tested = impl->cached_tested || passed_programs().contains(impl->key);
     return impl;
 }
 
@@ -110,14 +139,17 @@ std::optional<std::string> driver_binary(const cl::Program& program) {
 }  // namespace
 
 void Program::Impl::store() noexcept try {
-    if (std::includes(cached.begin(), cached.end(), launched.begin(), launched.end())) return;
     const bool is_pocl = device.info().is_pocl;
-    if (from_cache && !is_pocl) return;  // such a binary holds all kernels from the start
-    device.impl().queue.finish();        // PoCL compiles until then
+    // A binary of another driver holds all kernels from the start.
+    const bool complete = (from_cache && !is_pocl) ||
+                          std::includes(cached.begin(), cached.end(), launched.begin(), launched.end());
+    if (complete && tested == cached_tested) return;
+    device.impl().queue.finish();  // PoCL compiles until then
     const std::optional<std::string> binary = is_pocl ? pack_compiled(key) : driver_binary(program);
     if (!binary) return;
     cached.insert(launched.begin(), launched.end());
-    store_program(key, {*binary, {cached.begin(), cached.end()}});
+    store_program(key, {*binary, {cached.begin(), cached.end()}, tested});
+    cached_tested = tested;
 } catch (...) {
     // What is not cached is compiled again in the next run.
 }
@@ -146,6 +178,14 @@ Kernel Program::kernel(const std::string& name) {
 void Program::store_binary() { impl_->store(); }
 
 bool Program::from_cache() const { return impl_->from_cache; }
+
+bool Program::passed_self_test() const { return impl_->tested; }
+
+void Program::record_self_test() {
+    impl_->tested = true;
+    passed_programs().insert(impl_->key);
+    impl_->store();
+}
 
 Kernel::Kernel(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Kernel::~Kernel() = default;

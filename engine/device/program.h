@@ -85,6 +85,13 @@ public:
     /// Whether the program came from the cache.
     bool from_cache() const;
 
+    /// Whether its kernels, compiled as they are here, have passed the self-test: in this process or, as
+    /// the program cache says, in an earlier one.
+    bool passed_self_test() const;
+    /// Puts it on record that they have, here and, with the binary, in the program cache. Waits for the
+    /// queue.
+    void record_self_test();
+
     struct Impl;
 
 private:

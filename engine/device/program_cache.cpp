@@ -32,9 +32,10 @@ struct Header {
     std::uint64_t key_bytes;
     std::uint64_t names_bytes;
     std::uint64_t binary_bytes;
+    std::uint64_t tested;  ///< 1: has passed the self-test
 };
 constexpr std::array<char, 8> file_magic = {'S', 'A', 'H', 'L', 'C', 'O', 'D', 'E'};
-constexpr std::uint64_t file_version = 1;
+constexpr std::uint64_t file_version = 2;
 constexpr std::size_t checked_from = offsetof(Header, key_bytes);
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo): each step is a bijection of the state, so that no change
@@ -117,7 +118,7 @@ std::optional<CachedProgram> parse(std::string_view file, std::string_view key) 
     const auto names = take(header.names_bytes);
     const auto binary = take(header.binary_bytes);
     if (!binary || !names || stored_key != key || !rest.empty() || binary->empty()) return std::nullopt;
-    CachedProgram program{std::string(*binary), {}};
+    CachedProgram program{std::string(*binary), {}, header.tested == 1};
     std::istringstream lines{std::string(*names)};
     for (std::string name; std::getline(lines, name);) program.kernels.push_back(name);
     return program;
@@ -126,7 +127,8 @@ std::optional<CachedProgram> parse(std::string_view file, std::string_view key) 
 std::string serialize(const std::string& key, const CachedProgram& program) {
     std::string names;
     for (const std::string& name : program.kernels) names += name + '\n';
-    Header header{file_magic, file_version, 0, key.size(), names.size(), program.binary.size()};
+    const std::uint64_t tested = program.tested ? 1 : 0;
+    Header header{file_magic, file_version, 0, key.size(), names.size(), program.binary.size(), tested};
     std::string file(sizeof(header), '\0');
     std::memcpy(file.data(), &header, sizeof(header));
     file += key + names + program.binary;

@@ -10,6 +10,7 @@ namespace sahl {
 struct CachedProgram {
     std::string binary;                ///< the driver's, or what PoCL compiled, see pocl_programs.h
     std::vector<std::string> kernels;  ///< whose compiled work-group code is in it
+    bool tested = false;               ///< they have passed the self-test
 };
 
 /// The program that was stored under `key`, the whole text of what its binary depends on (sources,

@@ -7,6 +7,7 @@
 #include "engine/render/camera_constants.h"
 #include "engine/render/trace_aovs.h"
 #include "engine/render/wavefront.h"
+#include "engine/self_test/first_use.h"
 
 namespace sahl {
 namespace {
@@ -37,11 +38,10 @@ std::uint64_t pixel_count(const Crop& crop) {
 
 struct Renderer::Impl {
     Impl(Device& on, const Scene& scene)
-        : device(on),
-          cameras(scene.cameras),
-          device_scene(make_device_scene(on, scene)),
-          program(build_wavefront_program(on)),
-          kernels(program) {}
+        : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(program) {
+        test_before_first_use(on, program, kernels);
+        device_scene = make_device_scene(on, scene);
+    }
 
     /// Rays of a batch for a wave of `samples` or more waves.
     std::uint32_t capacity(const RenderSettings& settings, std::uint64_t samples) const {
@@ -52,9 +52,9 @@ struct Renderer::Impl {
 
     Device& device;
     std::vector<Camera> cameras;
-    DeviceScene device_scene;
     Program program;
     WavefrontKernels kernels;
+    DeviceScene device_scene;
 };
 
 Renderer::Renderer(Device& device, const Scene& scene) : impl_(std::make_unique<Impl>(device, scene)) {}
@@ -89,6 +89,7 @@ std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std:
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
     Program program = build_aov_program(impl_->device);
     Kernel describe = program.kernel("describe");
+    test_before_first_use(impl_->device, program, describe, impl_->kernels);
     return trace_aovs(wavefront, describe, camera, settings, crop, aovs);
 }
 

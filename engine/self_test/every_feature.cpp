@@ -77,6 +77,7 @@ void add_world(Scene& scene, const Textures& textures) {
     scene.primitives.back().sides = Sides::back;
     Material glow;
     glow.emission = {0.3F, 0.3F, 0.1F};
+    glow.diffuse = vec3(0.4F);
     glow.textures.emission = textures.fade;
     oracle::add_triangle(scene, {{-3, 1.5F, 0.2F}, {-1, 2, 0.3F}, {-2, 1.6F, 1.8F}}, glow, dmat4(1),
                          {{0, -1, 0}, {0.5F, -1, 0}, {0, -1, 0.5F}});
@@ -87,11 +88,14 @@ void add_world(Scene& scene, const Textures& textures) {
 
 void add_groups(Scene& scene, const Textures& textures) {
     const std::uint32_t pillar = oracle::add_group(scene);
-    oracle::add_cone(scene, {{0, 0, 0}, {0, 0, 1}, 0.25, 0.25, true},
-                     painted({0.8F, 0.8F, 0.5F}, textures.cells));
-    oracle::add_box(scene, {{-0.3, -0.3, 1}, {0.3, 0.3, 1.15}}, painted({0.6F, 0.4F, 0.3F}, textures.cells));
-    oracle::add_triangle(scene, {{-0.4F, 0, 0.9F}, {0.4F, 0, 0.9F}, {0, -0.3F, 1.5F}},
-                         painted({0.3F, 0.5F, 0.8F}, textures.cells),
+    Material column = painted({0.8F, 0.8F, 0.5F}, textures.cells);
+    column.reflection = vec3(0.2F);
+    oracle::add_cone(scene, {{0, 0, 0}, {0, 0, 1}, 0.25, 0.25, true}, column);
+    oracle::add_box(scene, {{-0.3, -0.3, 1.02}, {0.3, 0.3, 1.15}}, painted({0.6F, 0.4F, 0.3F}, textures.cells));
+    Material one_sided = painted({0.3F, 0.5F, 0.8F}, textures.cells);
+    one_sided.specular_model = SpecularModel::blinn;
+    one_sided.two_sided = false;
+    oracle::add_triangle(scene, {{-0.4F, 0, 0.9F}, {0.4F, 0, 0.9F}, {0, -0.3F, 1.5F}}, one_sided,
                          placed({0, 0, 0}, 20, {0, 0, 1}, {-1, 1, 1}));
     const std::uint32_t row = oracle::add_group(scene);
     oracle::add_polygon(

@@ -6,8 +6,8 @@
 namespace sahl {
 
 /// Every primitive, closed and open, one- and two-sided; point, directional, spot and ambient light; all
-/// patterns by place and by surface; nested, stretched and mirrored instances; glass in water, mirrors that
-/// weaken with the distance.
+/// patterns by place and by surface; both highlights; nested, stretched and mirrored instances; glass in
+/// water, mirrors that weaken with the distance.
 Scene every_feature();
 
 }  // namespace sahl

@@ -48,7 +48,7 @@ std::string damaged(const std::string& good, int variant) {
             bytes[below(bytes.size())] ^= static_cast<char>(1 << below(8));
             break;
         case 1:  // one flipped bit in the header
-            bytes[below(48)] ^= static_cast<char>(1 << below(8));
+            bytes[below(56)] ^= static_cast<char>(1 << below(8));
             break;
         case 2:  // cut short
             bytes.resize(variant == 2 ? 0 : below(bytes.size()));
@@ -145,10 +145,10 @@ TEST_CASE("a whole cache file whose binary the driver refuses is rebuilt") {
     CHECK(run(device, {"twice"}, from_cache) == 2);
     const std::filesystem::path file = files_of(cache.path()).front();
     const std::string good = read_file(file);
-    // The key is what lies between the 48 bytes of header and the kernel names.
+    // The key is what lies between the 56 bytes of header and the kernel names.
     std::uint64_t key_bytes = 0;
     std::memcpy(&key_bytes, good.data() + 24, 8);
-    const std::string key = good.substr(48, key_bytes);
+    const std::string key = good.substr(56, key_bytes);
     REQUIRE(load_program(key).has_value());
     store_program(key, {std::string(5000, 'g'), {"twice"}});
     REQUIRE(load_program(key)->binary == std::string(5000, 'g'));

@@ -1,0 +1,163 @@
+// The self-test of a device: right kernels pass it, each kind of mistake is found in the kernel that makes
+// it.
+#include <algorithm>
+#include <cstdint>
+#include <random>
+
+#include <catch2/catch.hpp>
+
+#include "engine/self_test/kernel_tests.h"
+#include "engine/self_test/self_test.h"
+#include "tests/device/test_device_support.h"
+#include "tests/render/rendered.h"
+#include "tests/support/broken_kernels.h"
+#include "tests/support/kernel_runner.h"
+
+namespace sahl::tests {
+namespace {
+
+TEST_CASE("self-test: this device passes, thousands of rays a kernel", "[self_test]") {
+    const SelfTestReport report = run_self_test(test_device());
+    std::vector<std::string> kernels;
+    for (const KernelTest& test : report.kernels) {
+        INFO(test.kernel << ": " << test.failure);
+        CHECK(test.failure == "");
+        // Far from what is allowed: another device may round otherwise.
+        CHECK(test.worst <= test.allowed / 4);
+        const bool of_rays = test.allowed > 0;
+        CHECK(test.checked >= (of_rays ? 3000U : 100U));
+        kernels.push_back(test.kernel);
+    }
+    CHECK(report.failed() == nullptr);
+    CHECK(kernels == std::vector<std::string>{"generate", "intersect", "shade", "shadow", "count_children",
+                                              "sum_children", "compact", "describe"});
+}
+
+TEST_CASE("self-test: right kernels are not refused, wherever rays go", "[self_test]") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<self_test::TestWave> waves(full_tests() ? 600 : 12);
+    for (self_test::TestWave& wave : waves) {
+        const auto vector = [&](double x, double y, double z) {
+            const glm::dvec3 v{x * uniform(random), y * uniform(random), 0};
+            return glm::dvec3{v.x, v.y, z * (uniform(random) + 1) + 0.05};
+        };
+        wave.camera = {vector(6, 5, 2), vector(2, 2, 0.8), {0.1, 0.2, 1}, 70 + 60 * uniform(random)};
+        wave.settings.resolution = {36, 28};
+        wave.settings.seed = random();
+        wave.crop = {0, 0, 36, 28};
+    }
+    Device& device = test_device();
+    Program program = build_wavefront_program(device);
+    WavefrontKernels kernels(program);
+    const SelfTestReport report = self_test::run_waves(device, kernels, waves);
+    for (const KernelTest& test : report.kernels) {
+        INFO(test.kernel << ": " << test.checked << " checked, worst " << test.worst);
+        CHECK(test.failure == "");
+        CHECK(test.checked > 0);
+    }
+}
+
+/// Mistakes of every step, in the order of the kernels; one after the other is put into right kernels.
+const std::vector<Fault> faults{
+    {"generate", "camera.h", "(real)x - (real)camera->half_width",
+     "(real)x - (real)0.5 - (real)camera->half_width"},
+    {"generate", "sampling.h", "((float)i + jitter)", "((float)i)"},
+    {"generate", "rng.h", "round < 10", "round < 9"},
+    {"generate", "camera.h", "rest / rows, top + rest % rows", "rest % width, top + rest / width"},
+    {"generate", "generate.cl", "(float3)(1.0f), pixel.y", "(float3)(1.0f, 1.0f, 0.999f), pixel.y"},
+    {"intersect", "sphere.h", "middle - half_chord, middle", "middle + half_chord, middle"},
+    {"intersect", "triangle.h", "((float*)&v)[lane] * scale", "((float*)&v)[lane] * 0.999f * scale"},
+    {"intersect", "triangle.h", "dot3(normal, v0 - ray->origin) / nd",
+     "dot3(normal, v0 - ray->origin) / fabs(nd)"},
+    {"intersect", "disc.h", "x * x + y * y <= 1.0f", "x * x + y * y <= 1.02f"},
+    {"intersect", "polygon.h", "(edge > 0.0f) == (b.y > a.y)", "edge > 0.0f"},
+    {"intersect", "box.h", "SAHL_MAX(x - half_x, y - half_y), z - half_z)", "x - half_x, y - half_y)"},
+    {"intersect", "quadric.h", "sqrt((1.0f - (r.px", "sqrt((1.001f - (r.px"},
+    {"intersect", "quadric.h", "(enter_z >= 0.0f) & (enter_z <= 1.0f)", "(enter_z >= 0.0f)"},
+    {"intersect", "quadric.h", "SAHL_MIN(last, SAHL_MAX(bottom, top))", "last"},
+    {"intersect", "hit.h", "front ? SAHL_ID_BACK_ONLY : SAHL_ID_FRONT_ONLY",
+     "front ? SAHL_ID_BACK_ONLY : 0u"},
+    {"intersect", "traverse_scalar.h", "entries[size] > cull_t", "entries[size] > 0.5f * cull_t"},
+    {"intersect", "traverse_scalar.h", "ray->instance == instance ? ray->exclude",
+     "ray->instance != instance ? ray->exclude"},
+    {"intersect", "instance.h", "instance_element(instance, 2, 3)", "(real)0"},
+    {"shade", "material.h", "light = diffuse * SAHL_MAX(cosine, 0.0f)",
+     "light = diffuse * 1.01f * SAHL_MAX(cosine, 0.0f)"},
+    {"shade", "material.h", "ns * (2.0f * cosine) - wi", "ns * (1.99f * cosine) - wi"},
+    {"shade", "material.h", "dot3(ns, h) / sqrt(length2)", "dot3(ns, h) / length2"},
+    {"shade", "material.h", "return 1.0f / attenuation(a, distance)", "return 1.0f"},
+    {"shade", "material.h", "n * ((real)2 * dot3_real(d, n))", "n * ((real)1.999 * dot3_real(d, n))"},
+    {"shade", "material.h", "(real)1 - eta * eta * (", "(real)1 - eta * ("},
+    {"shade", "shade.cl", "outside / ior : ior / outside", "ior / outside : outside / ior"},
+    {"shade", "shade.cl", "s.kr += s.kt;", ""},
+    {"shade", "shade.cl", "SAHL_MATERIAL_TWO_SIDED ? facing : surface.ns",
+     "SAHL_MATERIAL_TWO_SIDED ? facing : facing"},
+    {"shade", "shade.cl", "material->flags & SAHL_MATERIAL_ATTENUATES ? SAHL_RAY_ATTENUATED : 0u", "0u"},
+    {"shade", "shade.cl", "instance, weight * s.kt, pixel", "instance, s.kt, pixel"},
+    {"shade", "shade.cl", "scene.background[1], scene.background[2]",
+     "scene.background[2], scene.background[1]"},
+    {"shade", "light.h", "color * spot_falloff(light, wi) : color", "color : color"},
+    {"shade", "light.h", "x * x * (3.0f - 2.0f * x)", "x"},
+    {"shade", "light.h", "a[2] * distance * distance", "a[2] * distance"},
+    {"shade", "texture.h", "a * (1.0f - x) + b * x", "a * x + b * (1.0f - x)"},
+    {"shade", "texture.h", "is_odd(cell) ? b : a", "a"},
+    {"shade", "texture.h", "p.x * uv[2] + p.y * uv[4]", "p.y * uv[2] + p.x * uv[4]"},
+    {"shade", "texture.h", "(real)1 - p.z : p.z", "p.z : p.z"},
+    {"shade", "texture.h", "(real)2 * turn_of((float)-p.z", "(real)1 * turn_of((float)-p.z"},
+    {"shade", "texture.h",
+     "colors.reflection = SAHL_TEXTURED(colors.reflection, material->reflection_texture);", ""},
+    {"shade", "math.h", "1.0f / 6.0f", "1.0f / 7.0f"},
+    {"shade", "surface.h", "load3(data + 12) * u + load3(data + 15) * v",
+     "load3(data + 12) * v + load3(data + 15) * u"},
+    {"shade", "surface.h", "-slope * ((real)1 + slope * p.z) : p.z", "(real)0 : p.z"},
+    {"shade", "surface.h", "within && cap_nearer ? cap : side", "side"},
+    {"shade", "surface.h", "position - offset : position + offset", "position + offset : position - offset"},
+    {"shadow", "hit.h", "enter_is_origin = fabs(enter) < fabs(leave)", "enter_is_origin = false"},
+    {"shadow", "light.h", "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 1.0f",
+     "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 2.0f"},
+    {"shadow", "shadow.cl", "through *= load3", "through = load3"},
+    {"shadow", "shadow.cl", "sum += brought", "sum = brought"},
+    {"shadow", "shadow.cl", "SAHL_HIT_NOTHING ? 1.0f : 0.0f", "SAHL_HIT_NOTHING ? 1.0f : 0.01f"},
+    {"shadow", "shadow.cl", "load_soa3(shadow_light, 3u * l, capacity, i)",
+     "load_soa3(shadow_light, 0u, capacity, i)"},
+    {"count_children", "compact.cl", "shadow_rays += outcome / SAHL_OUTCOME_SHADOW_RAY",
+     "shadow_rays += outcome / SAHL_OUTCOME_SHADOW_RAY != 0u"},
+    {"count_children", "compact.cl", "block_counts[block_count + block] = transmitted",
+     "block_counts[block_count + block] = reflected"},
+    {"sum_children", "compact.cl", "k < 2u * block_count", "k < 2u * block_count - 1u"},
+    {"sum_children", "compact.cl", "totals[1] = (uint)shadow_rays", "totals[1] = (uint)(shadow_rays + 1u)"},
+    {"compact", "compact.cl", "move_ray(children, child_ids, i, next",
+     "move_ray(children, child_ids, i == 300u ? 301u : i, next"},
+    {"compact", "compact.cl", "k < SAHL_RAY_UINTS", "k < SAHL_RAY_UINTS - 1u"},
+    {"compact", "compact.cl", "to < capacity ? to : to - capacity", "to < capacity ? to : capacity - 1u"},
+    {"describe", "aov.cl", "turned ? -surface.ns : surface.ns", "surface.ns"},
+    {"describe", "aov.cl", "surface_colors(&shapes, material, textures, &surface, primitive).diffuse",
+     "load3(material->diffuse)"},
+    {"describe", "aov.cl", "depth = (float)(surface.t * dot3_real", "depth = (float)(dot3_real"},
+};
+
+TEST_CASE("self-test: each mistake is found in the kernel that makes it", "[self_test]") {
+    const TemporaryFolder cache;
+    const ScopedVariable no_cache("SAHL_CACHE_DIR", cache.path().string());
+    // Each takes a second or two: kernels are compiled for it.
+    const std::size_t step = full_tests() ? 1 : 20;
+    for (std::size_t i = 0; i < faults.size(); i += step) {
+        const Fault& fault = faults[i];
+        const TemporaryFolder kernels;
+        copy_kernels(kernels.path());
+        break_kernel(kernels.path(), fault);
+        const ScopedVariable from("SAHL_KERNEL_DIR", kernels.path().string());
+        INFO(fault.file << ": " << fault.from << " -> " << fault.to);
+        const SelfTestReport report = run_self_test(test_device());
+        const KernelTest* failed = report.failed();
+        CHECK(failed != nullptr);
+        if (failed == nullptr) continue;
+        INFO(failed->failure);
+        CHECK(failed->kernel == fault.kernel);
+        CHECK(contains(failed->failure, "expected"));
+    }
+}
+
+}  // namespace
+}  // namespace sahl::tests
