@@ -5,8 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "engine/oracle/build_scene.h"
 #include "tests/render/rendered.h"
-#include "tests/support/oracle/build_scene.h"
 
 namespace sahl::tests {
 namespace {
