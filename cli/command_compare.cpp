@@ -86,10 +86,10 @@ ExitCode compare_files(const CompareOptions& options, const CommonOptions& commo
     encoding.transfer = Transfer::linear;
     if (options.difference) check_output(*options.difference, encoding);
 
-    const Image a = read_image(options.a);
-    const Image b = read_image(options.b);
+    const Image a = read_untrusted_image(options.a);
+    const Image b = read_untrusted_image(options.b);
     std::optional<Image> mask;
-    if (options.mask) mask = read_image(*options.mask);
+    if (options.mask) mask = read_untrusted_image(*options.mask);
     const Comparison result = compare(a, b, static_cast<float>(options.threshold), mask ? &*mask : nullptr);
     defer_interruption();  // the file becomes whole
     if (options.difference) write_image(*options.difference, difference_image(a, b), encoding);

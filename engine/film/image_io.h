@@ -65,8 +65,13 @@ void write_image(const std::filesystem::path& path, const Image& image, const Ou
 
 /// Reads any image that OpenImageIO knows into 3 channels: R, G and B if it names them, else the first
 /// three; one channel is replicated. Values as stored, 8-bit code v as v/255, no transfer function.
-/// Throws Error(scene) for a missing, damaged or unknown file or one larger than 65536x65536,
-/// Error(memory) for one that does not fit into this machine's memory.
+/// Throws Error(scene) for a file that is missing, damaged, unknown or not regular, larger than 65536x65536
+/// or not believable in what it claims to hold, Error(memory) for one that does not fit into this
+/// machine's memory. A file made to attack the decoders may crash them: see read_untrusted_image.
 Image read_image(const std::filesystem::path& path);
+
+/// The same for a file from anywhere: it is decoded in a child process of limited memory and processor
+/// time, whose crash becomes an Error(scene). For a process without busy threads (see run_in_child).
+Image read_untrusted_image(const std::filesystem::path& path);
 
 }  // namespace sahl
