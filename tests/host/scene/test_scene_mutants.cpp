@@ -1,23 +1,35 @@
-// Mutants of scene files load, or end in an error with its place; they never do anything else.
+// Mutants of scene files load, or end in an error with its place, soon and without much memory; they never do
+// anything else.
+#include <sys/resource.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <array>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "engine/core/child_process.h"
+#include "engine/scene/scene_format.h"
 #include "tests/host/scene/parse.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/sound_scene.h"
+#include "tests/support/test_data.h"
 
 namespace sahl::tests {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int mutants_per_loader = 10'000;
+// What one mutant may cost.
+constexpr std::size_t max_bytes = std::size_t{1} << 30;
+constexpr std::size_t max_seconds = 5;
 
 std::string read(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -128,65 +140,6 @@ private:
     std::mt19937 random_;
 };
 
-bool finite(const Scene& scene) {
-    const auto all = [](const auto& list) {
-        return std::all_of(list.begin(), list.end(),
-                           [](const auto& v) { return std::isfinite(v.x + v.y + v.z); });
-    };
-    bool good = all(scene.vertices) && all(scene.normals) && all(scene.polygon_vertices);
-    for (const glm::dmat4& m : scene.transforms) {
-        for (int i = 0; i < 4; ++i) good = good && std::isfinite(m[i].x + m[i].y + m[i].z);
-    }
-    for (const Camera& c : scene.cameras) {
-        for (const glm::dvec3& v : {c.eye, c.look_at, c.up}) good = good && std::isfinite(v.x + v.y + v.z);
-    }
-    for (const Light& light : scene.lights) {
-        good = good && std::isfinite(light.position.x + light.position.y + light.position.z);
-        good = good && std::isfinite(light.direction.x + light.direction.y + light.direction.z);
-    }
-    return good;
-}
-
-// Whether every index of the scene names something.
-bool consistent(const Scene& scene) {
-    bool good = !scene.cameras.empty();
-    const auto check = [&](bool holds) { good = good && holds; };
-    for (const Primitive& p : scene.primitives) {
-        const std::size_t sizes[] = {scene.triangles.size(), scene.polygons.size(), scene.spheres.size(),
-                                     scene.cones.size(),     scene.discs.size(),    scene.boxes.size()};
-        check(p.index < sizes[static_cast<std::size_t>(p.kind)]);
-        check(p.material < scene.materials.size() && p.transform < scene.transforms.size());
-    }
-    for (const Triangle& t : scene.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            check(t.vertices[i] < scene.vertices.size());
-            check(!t.smooth || t.normals[i] < scene.normals.size());
-            check(!t.has_uv || t.uvs[i] < scene.uvs.size());
-        }
-    }
-    for (const Polygon& p : scene.polygons) {
-        check(p.vertex_count >= 4 && p.first_vertex + p.vertex_count <= scene.polygon_vertices.size());
-    }
-    for (const Material& m : scene.materials) {
-        for (const std::uint32_t t : {m.textures.ambient, m.textures.diffuse, m.textures.specular,
-                                      m.textures.emission, m.textures.reflection})
-            check(t == no_texture || t < scene.textures.size());
-    }
-    const auto check_instances = [&](const std::vector<Instance>& instances) {
-        for (const Instance& i : instances)
-            check(i.group < scene.groups.size() && i.transform < scene.transforms.size());
-    };
-    check_instances(scene.instances);
-    std::size_t next = world_primitive_count(scene);
-    for (const Group& g : scene.groups) {
-        check(g.first_primitive == next);
-        next += g.primitive_count;
-        check_instances(g.instances);
-    }
-    check(next == scene.primitives.size());
-    return good;
-}
-
 // "/folder/file.json:12:3: …", the file being one of the folder.
 bool has_place(const std::string& message, const fs::path& folder) {
     const std::string start = folder.string() + "/";
@@ -198,55 +151,108 @@ bool has_place(const std::string& message, const fs::path& folder) {
            std::sscanf(message.c_str() + colon, ":%d:%d: ", &line, &column) == 2 && line >= 1 && column >= 1;
 }
 
-}  // namespace
+/// What became of a mutant; the child says `started` before it parses one.
+struct Report {
+    enum class Kind { started, loaded, refused, wrong };
+    Kind kind = Kind::started;
+    int mutant = 0;
+    std::array<char, 500> words{};  ///< of what is wrong
+};
 
-TEST_CASE("10,000 mutants of scenes load or end in an error with its place", "[scene][json]") {
-    const TemporaryFolder folder;
-    // What including scenes refer to, unharmed.
-    for (const char* name : {"all_entities.nff", "all_commands.test", "all_features.json"})
-        fs::copy_file(own_scene(name), folder / name);
+Report try_mutant(const fs::path& path, const std::string& text, int number) {
+    Report report{Report::Kind::refused, number};
+    std::string wrong;
+    try {
+        wrong = flaw_of(parse(path, text));
+        report.kind = Report::Kind::loaded;
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::scene || !has_place(error.what(), path.parent_path()))
+            wrong = fmt::format("an error without its place: {}", error.what());
+    }
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    if (static_cast<std::size_t>(used.ru_maxrss) * 1024 > max_bytes)
+        wrong = "a mutant that takes much memory";
+    if (!wrong.empty()) {
+        report.kind = Report::Kind::wrong;
+        wrong.copy(report.words.data(), report.words.size() - 1);
+    }
+    return report;
+}
 
-    struct Source {
-        const char* name;
-        int mutants;
-    };
-    Mutator mutator(20240229);
+struct Counts {
     int loaded = 0;
     int refused = 0;
-    for (const auto& [name, mutants] :
-         {Source{"all_features.json", 5000}, Source{"all_includes.json", 2500},
-          Source{"all_entities.nff", 1250}, Source{"all_commands.test", 1250}}) {
-        const std::string text = read(own_scene(name));
-        REQUIRE(text.size() > 100);
-        for (int round = 0; round < mutants; ++round) {
-            const std::string mutant = mutator.mutate(text);
-            const fs::path path = folder / ("mutant" + fs::path(name).extension().string());
-            const auto start = std::chrono::steady_clock::now();
-            try {
-                const Scene scene = parse(path, mutant);
-                ++loaded;
-                if (!finite(scene) || !consistent(scene)) {
-                    INFO(mutant);
-                    FAIL("a scene that is not finite and consistent");
-                }
-            } catch (const Error& error) {
-                ++refused;
-                if (error.code() != ExitCode::scene || !has_place(error.what(), folder.path())) {
-                    INFO(mutant);
-                    INFO(error.what());
-                    FAIL("an error without its place");
-                }
+};
+
+/// Mutants 0…count - 1 of the scene `seed`, in a child process that each mutant may bring down.
+void try_mutants(const fs::path& seed, int count, Counts& counts) {
+    const std::string text = read(seed);
+    REQUIRE(text.size() > 100);
+    const fs::path path = seed.parent_path() / ("mutant" + seed.extension().string());
+    const auto mutant = [&](int number) { return Mutator(static_cast<unsigned>(number)).mutate(text); };
+    const auto bytes_of = [](Report& report) { return std::span(&report, 1); };
+    Report report;
+    const std::string misdeed = run_in_child(
+        [&](const PipeEnd& pipe) {
+            for (int number = 0; number < count; ++number) {
+                Report started{Report::Kind::started, number};
+                pipe.write(std::as_bytes(bytes_of(started)));
+                limit_process(max_bytes, max_seconds);
+                Report end = try_mutant(path, mutant(number), number);
+                pipe.write(std::as_bytes(bytes_of(end)));
             }
-            // Milliseconds, in fact; a loaded machine with sanitizers is slower.
-            if (std::chrono::steady_clock::now() - start > std::chrono::seconds(10)) {
-                INFO(mutant);
-                FAIL("a mutant that takes long");
+        },
+        [&](const PipeEnd& pipe) {
+            while (report.kind != Report::Kind::wrong &&
+                   pipe.read(std::as_writable_bytes(bytes_of(report)))) {
+                counts.loaded += report.kind == Report::Kind::loaded ? 1 : 0;
+                counts.refused += report.kind == Report::Kind::refused ? 1 : 0;
             }
+        });
+    if (report.kind == Report::Kind::started || report.kind == Report::Kind::wrong) {
+        INFO("mutant " << report.mutant << " of " << seed << ":\n" << mutant(report.mutant));
+        FAIL((report.kind == Report::Kind::wrong ? report.words.data() : "the loader " + misdeed));
+    }
+    CHECK(misdeed == "");
+}
+
+/// Our scenes of this format, and small ones of the test data.
+std::vector<fs::path> seeds(SceneFormat format) {
+    constexpr std::uintmax_t small = 16'384;
+    const fs::path sources = std::getenv("SAHL_SOURCE_DIR");
+    std::vector<fs::path> folders{sources / "tests/data", sources / "scenes", sources / "docs/examples"};
+    if (const auto data = test_data()) {
+        folders.push_back(*data / "spd");
+        folders.push_back(*data / "cse167");
+    }
+    std::vector<fs::path> files;
+    for (const fs::path& folder : folders) {
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            if (entry.is_regular_file() && scene_format(entry.path()) == format && entry.file_size() <= small)
+                files.push_back(entry.path());
         }
     }
-    // Most damage is seen; some, such as in comments, is none.
-    CHECK(refused > 6000);
-    CHECK(loaded > 500);
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+}  // namespace
+
+TEST_CASE("10,000 mutants of scenes for each loader load or end in an error with its place",
+          "[scene][json]") {
+    for (const SceneFormat format : {SceneFormat::json, SceneFormat::nff, SceneFormat::cse167}) {
+        const std::vector<fs::path> files = seeds(format);
+        REQUIRE_FALSE(files.empty());
+        Counts counts;
+        const int each = mutants_per_loader / static_cast<int>(files.size()) + 1;
+        for (const fs::path& file : files) try_mutants(file, each, counts);
+        INFO(files.front());
+        CHECK(counts.loaded + counts.refused >= mutants_per_loader);
+        // Most damage is seen; some, such as in comments, is none.
+        CHECK(counts.refused > mutants_per_loader / 3);
+        CHECK(counts.loaded > mutants_per_loader / 20);
+    }
 }
 
 }  // namespace sahl::tests

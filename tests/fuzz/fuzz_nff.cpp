@@ -1,0 +1,14 @@
+#include <cstdint>
+
+#include "engine/scene/scene_nff.h"
+#include "tests/fuzz/fuzz_loader.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    sahl::tests::fuzz_loader([&] {
+        sahl::TextReader reader("scene", std::string(data, data + size));
+        return sahl::read_nff(reader);
+    });
+    return 0;
+}
