@@ -20,6 +20,7 @@ using self_test::Generation;
 using self_test::TestWave;
 
 constexpr int depth = 3;
+
 TestWave wave_from(const glm::dvec3& eye, const glm::dvec3& look_at, double fov_y, const Crop& crop,
                    int spp) {
     TestWave wave;

@@ -33,6 +33,13 @@ TEST_CASE("self-test: this device passes, thousands of rays a kernel", "[self_te
                                               "sum_children", "compact", "describe"});
 }
 
+TEST_CASE("self-test: it holds less than a megabyte, and nothing behind it", "[self_test]") {
+    Device device;
+    CHECK(run_self_test(device).failed() == nullptr);
+    CHECK(device.memory().peak() < 1U << 20U);
+    CHECK(device.memory().current() == 0);
+}
+
 TEST_CASE("self-test: right kernels are not refused, wherever rays go", "[self_test]") {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(-1, 1);
