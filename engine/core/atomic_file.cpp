@@ -1,14 +1,16 @@
 #include "engine/core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <string>
+#include <string_view>
 #include <system_error>
-#include <utility>
+#include <vector>
 
 #include "engine/core/error.h"
 
@@ -16,6 +18,8 @@ namespace sahl {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view part_mark = ".part-";
 
 [[noreturn]] void fail(const fs::path& path, int cause) {
     const char* remedy = "choose another output path";
@@ -51,25 +55,66 @@ namespace fs = std::filesystem;
 class Descriptor {
 public:
     explicit Descriptor(int value) : value_(value) {}
-    ~Descriptor() {
-        if (value_ >= 0) ::close(value_);
-    }
+    ~Descriptor() { close(); }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
     int get() const { return value_; }
-    int release() { return std::exchange(value_, -1); }
+    /// 0, or the cause of a failure.
+    int close() {
+        const int result = value_ >= 0 && ::close(value_) != 0 && errno != EINTR ? errno : 0;
+        value_ = -1;
+        return result;
+    }
 
 private:
     int value_;
 };
 
-/// Removes the temporary file unless it has been renamed.
-struct Temporary {
-    fs::path path;
-    bool renamed = false;
-    ~Temporary() {
-        if (!renamed) ::unlink(path.c_str());
+/// A new file `PREFIX` + process id, locked: whoever finds one whose lock is free knows that its writer
+/// is dead. (Process ids would not tell: they are used again, and containers share folders.)
+/// Removed at the end unless it has been renamed.
+class Temporary {
+public:
+    /// `path` is for messages.
+    Temporary(const std::string& prefix, mode_t mode, const fs::path& path) {
+        for (int attempt = 0; file_ < 0; ++attempt) {
+            path_ = prefix + std::to_string(::getpid()) + (attempt == 0 ? "" : "-" + std::to_string(attempt));
+            file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+            // A process of the same number in another container has it, or took it for a dead one's.
+            const bool taken = file_ < 0 ? errno == EEXIST : !lock();
+            if (taken && attempt < 100) continue;
+            if (file_ < 0) fail(path, errno);
+        }
     }
+    ~Temporary() {
+        if (!renamed_) ::unlink(path_.c_str());
+        if (file_ >= 0) ::close(file_);
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+
+    int get() const { return file_; }
+    /// 0, or the cause of a failure. The file stays locked until then: nobody takes it for a dead one's.
+    int rename_to(const fs::path& target) {
+        renamed_ = ::rename(path_.c_str(), target.c_str()) == 0;
+        return renamed_ ? 0 : errno;
+    }
+
+private:
+    /// False, and no file, when another process removes it just now. Some file systems have no locks:
+    /// nothing is removed there.
+    bool lock() {
+        struct stat status {};
+        const bool busy = ::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (!busy && ::fstat(file_, &status) == 0 && status.st_nlink > 0) return true;
+        ::close(file_);
+        file_ = -1;
+        return false;
+    }
+
+    fs::path path_;
+    int file_ = -1;
+    bool renamed_ = false;
 };
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
@@ -95,15 +140,11 @@ void write_all(int file, std::span<const std::byte> bytes, const fs::path& path)
     }
 }
 
-void close_checked(Descriptor& file, const fs::path& path) {
-    if (::close(file.release()) != 0 && errno != EINTR) fail(path, errno);
-}
-
 void write_special(const fs::path& path, std::span<const std::byte> bytes) {
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
     if (file.get() < 0) fail(path, errno);
     write_all(file.get(), bytes, path);
-    close_checked(file, path);
+    if (const int cause = file.close(); cause != 0) fail(path, cause);
 }
 
 /// A folder's entries reach the disk by syncing the folder; some file systems cannot (EINVAL).
@@ -113,7 +154,27 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
     if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL)) fail(path, errno);
 }
 
+/// Removes temporary files of dead writers in `folder` that begin with `prefix`.
+void remove_stale_files(const fs::path& folder, std::string_view prefix) {
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename().string().starts_with(prefix)) remove_if_stale(entry->path());
+    }
+}
+
 }  // namespace
+
+void remove_if_stale(const fs::path& temporary) {
+    const std::string name = temporary.filename().string();
+    const std::size_t mark = name.rfind(part_mark);
+    if (!name.starts_with('.') || mark == std::string::npos ||
+        name.find_first_not_of("0123456789-", mark + part_mark.size()) != std::string::npos)
+        return;
+    const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat status {};
+    if (file.get() < 0 || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+    if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(temporary.c_str());
+}
 
 bool is_special_file(const fs::path& path) {
     std::error_code ignored;
@@ -139,7 +200,7 @@ void check_output_file(const fs::path& path) try {
     fail(path, error.code().value());
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes) try {
+void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t mode) try {
     if (is_special_file(path)) return write_special(path, bytes);
     const fs::path target = follow_links(path);
     if (fs::is_directory(fs::status(target)) || !target.has_filename()) fail(path, EISDIR);
@@ -147,18 +208,14 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) try {
     fs::create_directories(folder);
 
     // A name may have 255 bytes: a long one is cut to leave room for the rest.
-    const std::string name = target.filename().string().substr(0, 200);
-    Temporary temporary{folder / ("." + name + ".part-" + std::to_string(::getpid()))};
-    ::unlink(temporary.path.c_str());  // left by a process of the same number that was killed
-    Descriptor file(::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.get() < 0) fail(path, errno);
-    write_all(file.get(), bytes, path);
+    const std::string name = "." + target.filename().string().substr(0, 200) + std::string(part_mark);
+    remove_stale_files(folder, name);
+    Temporary temporary((folder / name).string(), mode, path);
+    write_all(temporary.get(), bytes, path);
     struct stat old {};
-    if (::stat(target.c_str(), &old) == 0) ::fchmod(file.get(), old.st_mode & 0777);
-    if (::fsync(file.get()) != 0) fail(path, errno);
-    close_checked(file, path);
-    if (::rename(temporary.path.c_str(), target.c_str()) != 0) fail(path, errno);
-    temporary.renamed = true;
+    if (::stat(target.c_str(), &old) == 0) ::fchmod(temporary.get(), old.st_mode & 0777);
+    if (::fsync(temporary.get()) != 0) fail(path, errno);
+    if (const int cause = temporary.rename_to(target); cause != 0) fail(path, cause);
     sync_folder(folder, path);
 } catch (const fs::filesystem_error& error) {
     fail(path, error.code().value());

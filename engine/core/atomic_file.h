@@ -1,6 +1,8 @@
 // Output files that are either whole or not there.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -17,10 +19,14 @@ bool is_special_file(const std::filesystem::path& path);
 /// Makes `bytes` the content of file `path`. They are written to `.NAME.part-PID` beside it, synced
 /// and renamed, so that whoever opens `path` finds the old content or the new, and after a failure
 /// the old. Missing folders are made; a symbolic link stays and the file it leads to is replaced; a
-/// replaced file keeps its permissions; a special file is written to directly.
+/// replaced file keeps its permissions, a new one has `mode` less the umask; a special file is written
+/// to directly. Temporary files that killed writers of `path` left are removed.
 /// Throws Error(output) naming `path`, the cause and the remedy; the temporary file is gone then.
 /// A process that wants the error instead of the signal when it meets its file size limit or a
 /// pipe without a reader ignores SIGXFSZ and SIGPIPE.
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes, mode_t mode = 0666);
+
+/// Removes `temporary` if it is a temporary file of write_file whose writer is dead.
+void remove_if_stale(const std::filesystem::path& temporary);
 
 }  // namespace sahl

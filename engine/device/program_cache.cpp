@@ -11,9 +11,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <string_view>
 #include <utility>
+
+#include "engine/core/atomic_file.h"
 
 namespace sahl {
 namespace {
@@ -92,15 +95,6 @@ std::optional<std::string> read_own_file(const fs::path& path) {
     return bytes;
 }
 
-bool write_all(int descriptor, std::string_view bytes) {
-    while (!bytes.empty()) {
-        const ssize_t put = write(descriptor, bytes.data(), bytes.size());
-        if (put <= 0) return false;
-        bytes.remove_prefix(static_cast<std::size_t>(put));
-    }
-    return true;
-}
-
 std::optional<CachedProgram> parse(std::string_view file, std::string_view key) {
     Header header{};
     if (file.size() < sizeof(header)) return std::nullopt;
@@ -137,14 +131,16 @@ std::string serialize(const std::string& key, const CachedProgram& program) {
     return file;
 }
 
-/// Removes the files that were used longest ago, those of interrupted writers among them.
+/// Removes what killed writers left, and the files that were used longest ago.
 void prune(const fs::path& folder) {
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         if (entry->path().filename().string().find(file_extension) == std::string::npos) continue;
-        std::error_code ignored;
-        files.emplace_back(entry->last_write_time(ignored), entry->path());
+        remove_if_stale(entry->path());
+        std::error_code gone;
+        const fs::file_time_type used = entry->last_write_time(gone);
+        if (!gone) files.emplace_back(used, entry->path());
     }
     if (files.size() <= most_files) return;
     std::sort(files.begin(), files.end());
@@ -164,18 +160,9 @@ std::optional<CachedProgram> load_program(const std::string& key) {
 void store_program(const std::string& key, const CachedProgram& program) noexcept try {
     const auto folder = cache_folder();
     if (!folder) return;
-    std::error_code error;
-    fs::create_directories(*folder, error);
-    const fs::path target = file_of(*folder, key);
-    std::string temporary = target.string() + ".part-XXXXXX";
-    bool whole = false;
-    {
-        const File file(mkostemp(temporary.data(), O_CLOEXEC));
-        if (file.get() < 0) return;
-        whole = write_all(file.get(), serialize(key, program)) && fsync(file.get()) == 0;
-    }
-    if (whole) fs::rename(temporary, target, error);
-    if (!whole || error) fs::remove(temporary, error);
+    const std::string file = serialize(key, program);
+    constexpr mode_t own = 0600;  // it will be run: nobody else may write it
+    write_file(file_of(*folder, key), std::as_bytes(std::span(file)), own);
     prune(*folder);
 } catch (...) {
     // A cache that cannot be kept costs time in the next run and nothing in this one.

@@ -189,6 +189,17 @@ TEST_CASE("old cache files make room") {
     CHECK(load_program("key 69").has_value());
 }
 
+TEST_CASE("what killed writers left in the cache goes, its files are their owner's alone") {
+    const TemporaryFolder cache;
+    const ScopedVariable variable("SAHL_CACHE_DIR", cache.path().string());
+    write_file(cache.path() / ".0123456789abcdef.sahl-program.part-4321", "half");
+    store_program("key", {"binary", {}});
+    REQUIRE(files_of(cache.path()).size() == 1);
+    const auto writers = std::filesystem::perms::group_write | std::filesystem::perms::others_write;
+    const auto permissions = std::filesystem::status(files_of(cache.path()).front()).permissions();
+    CHECK((permissions & writers) == std::filesystem::perms::none);
+}
+
 TEST_CASE("no cache folder, or one that cannot be written, is no error") {
     Device device;
     bool from_cache = true;

@@ -1,6 +1,7 @@
 #include "engine/core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -122,6 +123,34 @@ TEST_CASE("output file: symbolic links stay and what they lead to is replaced", 
     fs::create_symlink("loop", folder / "loop");
     CHECK_THAT(output_error([&] { write(folder / "loop", "x"); }), Catch::Contains("symbolic links"));
     CHECK_THAT(output_error([&] { check_output_file(folder / "loop"); }), Catch::Contains("symbolic links"));
+}
+
+TEST_CASE("output file: what killed writers left is removed, what living ones write is not", "[output]") {
+    const TemporaryFolder folder;
+    const std::string own = ".a.png.part-" + std::to_string(::getpid());
+    for (const char* stale : {".a.png.part-1", ".a.png.part-123456-2"}) put(folder / stale, "half");
+    put(folder / own, "half");  // by a process that had our number
+    put(folder / ".a.png.part-77", "living");
+    const int living = ::open((folder / ".a.png.part-77").c_str(), O_WRONLY | O_CLOEXEC);
+    REQUIRE(::flock(living, LOCK_EX | LOCK_NB) == 0);
+    for (const char* other : {".b.png.part-1", ".a.png.part-1x", "a.png.part-1", ".a.png"})
+        put(folder / other, "mine");
+    write(folder / "a.png", "x");
+    CHECK(content_of(folder / "a.png") == "x");
+    CHECK(folder.entries() == 6);
+    CHECK(content_of(folder / ".a.png.part-77") == "living");
+
+    // A process of our number, in a container that has the folder too.
+    put(folder / own, "living");
+    const int same_number = ::open((folder / own).c_str(), O_WRONLY | O_CLOEXEC);
+    REQUIRE(::flock(same_number, LOCK_EX | LOCK_NB) == 0);
+    write(folder / "a.png", "y");
+    CHECK(content_of(folder / "a.png") == "y");
+    CHECK(content_of(folder / own) == "living");
+    ::close(living);
+    ::close(same_number);
+    write(folder / "a.png", "z");
+    CHECK(folder.entries() == 5);
 }
 
 TEST_CASE("output file: special files are written to, not replaced", "[output]") {
