@@ -7,6 +7,7 @@
 #include <new>
 
 #include "cli/commands.h"
+#include "cli/driver_failure.h"
 #include "cli/interruption.h"
 #include "cli/output_name.h"
 #include "cli/render_files.h"
@@ -115,6 +116,7 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
     const std::vector<std::vector<Output>> outputs = plan_outputs(options, depths);
 
     Device device(common.device);
+    take_driver_failures();
     log_debug(fmt::format("device {} ({}), driver {}", device.info().name, device.info().platform,
                           device.info().driver));
     Renderer renderer(device, scene);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/driver_failure.h"
 #include "cli/interruption.h"
 #include "cli/standard_output.h"
 #include "engine/core/log.h"
@@ -136,7 +137,10 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
         return ExitCode::ok;
     }
     configure_log(common);
-    if (common.json) report_interruption_as_event();
+    if (common.json) {
+        report_interruption_as_event();
+        report_driver_failure_as_event();
+    }
     if (version) {
         print_version(common);
         return ExitCode::ok;
@@ -193,5 +197,6 @@ int main(int argc, char** argv) {
     sahl::cli::take_signals();
     const int status = sahl::cli::guarded_run(argc, argv);
     sahl::cli::defer_interruption();  // it is at its end: nothing to tell any more
+    sahl::cli::expect_end();
     return status;
 }

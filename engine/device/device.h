@@ -73,8 +73,13 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Whether the disk of the folder that PoCL compiles into is full, or the folder is gone: why it aborts.
+/// Async-signal-safe.
+bool driver_lacks_room();
+
 /// Ends the process with `status` at once, whatever its threads do, and removes what OpenCL drivers
 /// keep in temporary files for it. For a process that is interrupted: nothing is destroyed in order.
+/// Async-signal-safe.
 [[noreturn]] void exit_at_once(int status);
 
 }  // namespace sahl

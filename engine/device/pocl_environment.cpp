@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -27,6 +29,16 @@ namespace fs = std::filesystem;
 constexpr const char* folder_prefix = "sahl-pocl-";
 constexpr const char* lock_name = "lock";
 constexpr std::uintmax_t least_free = std::uintmax_t{32} << 20;  // bytes; PoCL aborts on a full disk
+
+// The compiler writes up to 2 MB into one file.
+constexpr std::uintmax_t largest_file = std::uintmax_t{8} << 20;
+
+std::uintmax_t free_bytes(const struct statvfs& space) {
+    return std::uintmax_t{space.f_bavail} * space.f_frsize;
+}
+
+/// The private folder's path while there is one, for functions that any thread may call at any time.
+std::atomic<const char*> folder_in_use = nullptr;
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& reason) {
     throw Error(
@@ -75,7 +87,7 @@ private:
     void check_space() const {
         struct statvfs space {};
         if (statvfs(path_.c_str(), &space) != 0) refuse(path_.parent_path(), std::strerror(errno));
-        const std::uintmax_t free = std::uintmax_t{space.f_bavail} * space.f_frsize;
+        const std::uintmax_t free = free_bytes(space);
         if (free < least_free) refuse(path_.parent_path(), fmt::format("only {} KiB are free", free >> 10));
     }
 
@@ -89,6 +101,7 @@ private:
 
     void remove() {
         if (getpid() != owner_) return;  // a fork's exit is not ours
+        folder_in_use = nullptr;
         std::error_code ignored;
         fs::remove_all(path_, ignored);
         if (lock_ >= 0) close(lock_);
@@ -125,12 +138,19 @@ fs::path temporary_folder() {
     refuse(set != nullptr ? set : "/tmp", error.message());
 }
 
-/// The private folder's path, for exit_at_once(), which any thread may call at any time.
-std::atomic<const char*> folder_in_use = nullptr;
-
 const PrivateFolder& private_folder() {
     static const PrivateFolder folder(temporary_folder());
     return folder;
+}
+
+/// LLVM ends the process when it cannot write a file.
+void check_file_size_limit() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur >= largest_file) return;
+    throw Error(ExitCode::device,
+                fmt::format("the limit of {} KiB a file is too low: PoCL's compiler needs {} MiB; raise it "
+                            "(ulimit -f)",
+                            limit.rlim_cur >> 10, largest_file >> 20));
 }
 
 }  // namespace
@@ -138,6 +158,7 @@ const PrivateFolder& private_folder() {
 void prepare_pocl(int threads) {
     static std::once_flag once;
     std::call_once(once, [threads] {
+        check_file_size_limit();
         remove_stale_folders(temporary_folder());
         folder_in_use = private_folder().path().c_str();
         setenv("POCL_CACHE_DIR", folder_in_use, 1);
@@ -147,13 +168,21 @@ void prepare_pocl(int threads) {
 
 const fs::path& pocl_folder() { return private_folder().path(); }
 
+bool driver_lacks_room() {
+    const char* folder = folder_in_use;
+    struct statvfs space {};
+    return folder != nullptr && (statvfs(folder, &space) != 0 || free_bytes(space) < largest_file);
+}
+
 void exit_at_once(int status) {
     const char* folder = folder_in_use;
     if (folder == nullptr) _exit(status);
+    const std::array<char, 4> digits{static_cast<char>('0' + status / 100),
+                                     static_cast<char>('0' + status / 10 % 10),
+                                     static_cast<char>('0' + status % 10), '\0'};
     // While a compiler works in the folder it cannot be removed, and PoCL aborts when its folder goes.
     // Another program in this process's place ends all threads at one moment.
-    execl("/bin/sh", "sh", "-c", "/bin/rm -rf -- \"$0\"; exit \"$1\"", folder, std::to_string(status).c_str(),
-          nullptr);
+    execl("/bin/sh", "sh", "-c", "/bin/rm -rf -- \"$0\"; exit \"$1\"", folder, digits.data(), nullptr);
     _exit(status);  // the next process removes the folder
 }
 

@@ -12,7 +12,8 @@ namespace sahl {
 /// at exit: PoCL's own cache is shared between racing processes, and code that is damaged there is
 /// run all the same. Folders that dead processes left are removed too. `threads` > 0 becomes
 /// POCL_MAX_PTHREAD_COUNT.
-/// Throws Error(device) when there is no place to write and execute files, for PoCL would abort.
+/// Throws Error(device) when there is no place to write and execute files or the limit of their size
+/// (RLIMIT_FSIZE) is too low, for PoCL would end the process.
 void prepare_pocl(int threads);
 
 /// The private folder; after prepare_pocl().

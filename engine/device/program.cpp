@@ -12,6 +12,7 @@
 
 #include "engine/device/device_impl.h"
 #include "engine/device/kernel_source.h"
+#include "engine/device/pocl_environment.h"
 #include "engine/device/pocl_programs.h"
 #include "engine/device/program_cache.h"
 
@@ -98,6 +99,12 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
     check_cl(status, "creating a program");
     status = program.build({device.impl().device}, options.c_str());
     if (status == CL_SUCCESS) return program;
+    if (driver_lacks_room()) {
+        throw Error(ExitCode::device,
+                    fmt::format("building the kernels failed, for there is no room in {}; free some space or "
+                                "set TMPDIR to another folder",
+                                pocl_folder().string()));
+    }
     const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.impl().device);
     throw Error(ExitCode::device,
                 fmt::format("building the kernels failed: {}\ndevice: {} ({}, driver {})\noptions: {}\n{}",
