@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/memory_report.h"
 #include "cli/standard_output.h"
 #include "engine/render/scene_info.h"
 
@@ -43,16 +44,6 @@ const char* format_of(const std::filesystem::path& scene) {
     return extension == ".nff" ? "Neutral File Format" : extension == ".test" ? "CSE 167" : "Sahl scene";
 }
 
-/// "12 B", "3.40 MiB".
-std::string human_size(std::uint64_t bytes) {
-    constexpr std::array units{"KiB", "MiB", "GiB", "TiB"};
-    if (bytes < 1024) return fmt::format("{} B", bytes);
-    double value = static_cast<double>(bytes) / 1024;
-    std::size_t unit = 0;
-    for (; value >= 1024 && unit + 1 < units.size(); ++unit) value /= 1024;
-    return fmt::format("{:.2f} {}", value, units[unit]);
-}
-
 template <std::size_t N>
 std::uint64_t sum(const std::array<std::uint64_t, N>& counts) {
     std::uint64_t all = 0;
@@ -70,13 +61,6 @@ std::string counts_text(const std::array<std::uint64_t, N>& counts, const std::a
                                  counts[i] == 1 ? names[i].one : names[i].many);
     }
     return fmt::format("{}{}", sum(counts), parts);
-}
-
-std::vector<std::pair<const char*, std::uint64_t>> memory_parts(const MemoryPlan& memory) {
-    return {{"bvh_nodes", memory.nodes},     {"leaf_blocks", memory.leaf_blocks},
-            {"shapes", memory.shapes},       {"instances", memory.instances},
-            {"materials", memory.materials}, {"ray_queues", memory.ray_queues},
-            {"film", memory.film},           {"total", memory.total()}};
 }
 
 std::vector<std::string> camera_names(const Scene& scene) {
@@ -143,12 +127,8 @@ std::string info_text(const InfoOptions& options, const Scene& scene, const Scen
                      "{:.2f}, built in {:.2f} s",
                      info.bvh.nodes, info.bvh.leaves, info.bvh.depth, info.bvh.leaf_fill, info.bvh.sah_cost,
                      info.bvh.build_seconds));
-    line("memory", "a render with the scene's size and depth needs");
-    for (const auto& [name, bytes] : memory_parts(info.memory)) {
-        std::string label = fmt::format("  {}", name);
-        std::replace(label.begin(), label.end(), '_', ' ');
-        line(label, fmt::format("{:>12}", human_size(bytes)));
-    }
+    line("memory", "a render of the scene's size and depth, without files");
+    text += memory_lines(info.memory);
     line("unused", unused_text(info));
     return text;
 }
@@ -238,7 +218,8 @@ Command add_info_command(CLI::App& app, CommonOptions& common) {
         "An unused material is one that no primitive has, an unused group one that no instance leads to.\n"
         "Bounds are those of the tree, a little larger than the scene; in text they are rounded.\n"
         "With -v or --json there are the materials' names by id, as the AOV id.material has it.\n"
-        "The memory of the OpenCL driver comes on top of the plan.\n"
+        "Memory: what is needed at different times, and the most at one time as the total; the OpenCL\n"
+        "driver's own comes on top. 'sahl render --dry-run' plans for other sizes, depths and files.\n"
         "Examples:\n"
         "  sahl info scene.json\n"
         "  sahl info scene.json --set count=100 --json");

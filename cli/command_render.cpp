@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
 #include "cli/interruption.h"
+#include "cli/memory_report.h"
 #include "cli/output_name.h"
 #include "cli/render_files.h"
 #include "cli/render_options.h"
@@ -76,11 +77,58 @@ ProgressStyle progress_style(const CommonOptions& common) {
     return isatty(STDERR_FILENO) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
 }
 
+/// The most bytes that one of the files takes while it is encoded.
+std::uint64_t largest_encoder(const std::vector<std::vector<Output>>& outputs, const Resolution& size,
+                              const std::vector<Aov>& aovs) {
+    std::uint64_t largest = 0;
+    for (const std::vector<Output>& files : outputs) {
+        for (const Output& file : files) {
+            const std::span<const Aov> layers =
+                can_hold_aovs(file.path) ? std::span(aovs) : std::span<const Aov>();
+            largest =
+                std::max(largest, encoder_bytes(file.path, file.encoding, size.width, size.height, layers));
+        }
+    }
+    return largest;
+}
+
+Resolution image_size(const RenderSettings& settings) {
+    if (const auto& crop = settings.crop) return {crop->x1 - crop->x0, crop->y1 - crop->y0};
+    return settings.resolution;
+}
+
+Job plan_job(const RenderOptions& options, const Scene& scene) {
+    Job job;
+    RenderSettings& settings = job.settings;
+    settings.resolution = options.size.value_or(scene.resolution);
+    settings.spp = options.spp;
+    settings.samples = options.samples;
+    if (options.samples) check_samples(*options.samples, options.spp);
+    settings.seed = options.seed;
+    settings.crop = options.crop;
+    settings.camera = find_camera(scene, options.camera);
+    if (options.crop) check_crop(*options.crop, settings.resolution);
+    job.camera = scene.cameras[settings.camera].name;
+    job.depths = options.depths.value_or(std::vector<int>{scene.depth});
+    job.outputs = plan_outputs(options, job.depths);
+    return job;
+}
+
+MemoryRequest request_of(const Job& job, const Device& device, const Scene& scene,
+                         const std::vector<Aov>& aovs) {
+    RenderSettings deepest = job.settings;
+    deepest.depth = *std::max_element(job.depths.begin(), job.depths.end());
+    MemoryRequest request = memory_request(device, deepest, static_cast<std::uint32_t>(scene.lights.size()));
+    for (const Aov aov : aovs) request.aovs += aov_pixel_bytes(aov) * request.pixels;
+    request.encoder = largest_encoder(job.outputs, image_size(job.settings), aovs);
+    return request;
+}
+
 Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& settings,
                       const std::vector<Output>& outputs, const std::vector<AovImage>& aovs,
-                      const std::string& camera, const RenderOptions& options, const CommonOptions& common) {
-    Rendered result{outputs, camera, settings, settings.resolution, {}, 0, 0};
-    if (const auto& crop = settings.crop) result.size = {crop->x1 - crop->x0, crop->y1 - crop->y0};
+                      const std::string& camera, const MemoryPlan& plan, const RenderOptions& options,
+                      const CommonOptions& common) {
+    Rendered result{outputs, camera, settings, image_size(settings), {}, 0, 0};
     Film film(device.memory(), result.size.width, result.size.height);
     {
         Progress progress(std::cerr, progress_style(common), fmt::format("depth {}", settings.depth),
@@ -95,50 +143,59 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
     }
     result.non_finite = film.non_finite_count();
     result.clamped = film.clamped_count();
+    const MemoryReservation files(device.memory(), plan.image + plan.encoder, "the image and its file");
     const Image image = film.resolve(sample_count(settings));
     if (is_partial(result)) save_partial(result, image, aovs, options, device.info());
     write_files(result, image, aovs, options, device.info());
     return result;
 }
 
-ExitCode render(const RenderOptions& options, const CommonOptions& common) {
-    const Scene scene = load_scene(options.scene, options.loading);
-    RenderSettings settings;
-    settings.resolution = options.size.value_or(scene.resolution);
-    settings.spp = options.spp;
-    settings.samples = options.samples;
-    if (options.samples) check_samples(*options.samples, options.spp);
-    settings.seed = options.seed;
-    settings.crop = options.crop;
-    settings.camera = find_camera(scene, options.camera);
-    if (options.crop) check_crop(*options.crop, settings.resolution);
-    const std::vector<int> depths = options.depths.value_or(std::vector<int>{scene.depth});
-    const std::vector<std::vector<Output>> outputs = plan_outputs(options, depths);
-
-    Device device(common.device);
-    take_driver_failures();
-    log_debug(fmt::format("device {} ({}), driver {}", device.info().name, device.info().platform,
-                          device.info().driver));
-    Renderer renderer(device, scene);
-    const BvhStatistics& bvh = renderer.bvh_statistics();
-    log_debug(fmt::format("{} primitives; tree of {} nodes, {} levels, built in {:.2f} s", bvh.primitives,
-                          bvh.nodes, bvh.depth, bvh.build_seconds));
-    const std::string& camera = scene.cameras[settings.camera].name;
-    if (common.json) print_start(options, settings, depths, camera, device.info(), bvh);
-
+/// Renders and writes all images of `job`, whose scene is in `renderer`.
+void render_job(Job& job, Renderer& renderer, Device& device, const MemoryPlan& plan,
+                const RenderOptions& options, const CommonOptions& common) {
+    job.settings.ray_budget = plan.ray_budget;
+    const MemoryReservation layers(device.memory(), plan.aovs, "AOVs");
     std::vector<AovImage> aovs;  // the same at every depth
-    if (!options.aovs.empty()) aovs = renderer.render_aovs(settings, options.aovs);
-    for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (!options.aovs.empty()) aovs = renderer.render_aovs(job.settings, options.aovs);
+    for (std::size_t i = 0; i < job.depths.size(); ++i) {
         if (interruption().stop_requested()) {
-            throw Interrupted(fmt::format("{} of {} images are written", i, depths.size()));
+            throw Interrupted(fmt::format("{} of {} images are written", i, job.depths.size()));
         }
-        settings.depth = depths[i];
-        const Rendered image =
-            render_image(renderer, device, settings, outputs[i], aovs, camera, options, common);
+        job.settings.depth = job.depths[i];
+        const Rendered image = render_image(renderer, device, job.settings, job.outputs[i], aovs, job.camera,
+                                            plan, options, common);
         warn_of_lost_light(image);
         if (!common.quiet) say_image(image);
         if (common.json) print_image(image);
     }
+}
+
+ExitCode render(const RenderOptions& options, const CommonOptions& common) {
+    Scene scene = load_scene(options.scene, options.loading);
+    Job job = plan_job(options, scene);
+    Device device(common.device);
+    take_driver_failures();
+    log_debug(fmt::format("device {} ({}), driver {}", device.info().name, device.info().platform,
+                          device.info().driver));
+    device.memory().set_limit(options.max_memory.value_or(physical_memory_bytes()));
+    const MemoryRequest request = request_of(job, device, scene, options.aovs);
+    if (options.dry_run) {
+        const std::uint64_t limit = device.memory().limit();
+        print_dry_run(options, job, device.info(), plan_render(scene, request, limit), limit, common.json);
+        return ExitCode::ok;
+    }
+
+    Renderer renderer(device, scene, request);
+    scene = Scene();  // the renderer has its own
+    const MemoryPlan& plan = renderer.memory_plan();
+    const BvhStatistics& bvh = renderer.bvh_statistics();
+    log_debug(fmt::format("{} primitives; tree of {} nodes, {} levels, built in {:.2f} s", bvh.primitives,
+                          bvh.nodes, bvh.depth, bvh.build_seconds));
+    log_debug(
+        fmt::format("memory: {} at most, batches of {} rays", human_size(plan.total()), plan.ray_budget));
+    if (common.json) print_start(options, job, device.info(), bvh);
+    render_job(job, renderer, device, plan, options, common);
+    log_debug(fmt::format("memory: {} in use at one time", human_size(device.memory().peak())));
     return ExitCode::ok;
 }
 
@@ -169,6 +226,7 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
         "  sahl render balls.nff --depth 0,1,2,3,4,7 -o 'd{depth}.png'\n"
         "  sahl render scene.json --camera top --set radius=1.5 --set color=1,0,0\n"
         "  sahl render scene.json -o layers.exr -o preview.png --aov Z,N,albedo --compression piz\n"
+        "  sahl render scene.json --size 16384x16384 --max-mem 8G --dry-run\n"
         "  sahl render scene.test -o exact.png --transfer linear --rounding floor");
     return {command, [options, &common] {
                 try {

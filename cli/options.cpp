@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace sahl::cli {
@@ -113,6 +114,20 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         if (end == std::string_view::npos) return pieces;
         text.remove_prefix(end + 1);
     }
+}
+
+std::uint64_t read_bytes(std::string_view option, std::string_view text) {
+    constexpr std::string_view wanted = "a number of bytes such as 500M or 8G (powers of 1024: K, M, G, T)";
+    constexpr std::string_view units = "KMGT";
+    if (text.empty()) refuse(option, text, wanted);
+    const std::size_t unit = units.find(text.back());
+    const std::size_t shift = unit == units.npos ? 0 : 10 * (unit + 1);
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size() - (shift > 0 ? 1 : 0);
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || stop != end || value > std::numeric_limits<std::uint64_t>::max() >> shift)
+        refuse(option, text, wanted);
+    return value << shift;
 }
 
 Resolution read_size(std::string_view option, std::string_view text) {

@@ -121,6 +121,9 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::strin
     return option;
 }
 
+/// Bytes: "4096", "64K", "64M", "8G", "1T", in powers of 1024.
+std::uint64_t read_bytes(std::string_view option, std::string_view text);
+
 /// "640x480".
 Resolution read_size(std::string_view option, std::string_view text);
 

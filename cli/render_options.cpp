@@ -111,6 +111,19 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
     set_words(*compression, {compression_names()});
 }
 
+void add_memory_options(CLI::App& command, RenderOptions& options) {
+    add_value(
+        command, "--max-mem", "SIZE",
+        [&options](const std::string& text) { options.max_memory = read_bytes("--max-mem", text); },
+        "most memory to use, such as 500M or 8G; the OpenCL driver's own comes on top (default: the "
+        "machine's)")
+        ->group("Memory");
+    command
+        .add_flag("--dry-run", options.dry_run,
+                  "checks everything and says what would be done; renders nothing")
+        ->group("Memory");
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
@@ -124,6 +137,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_image_options(command, options);
     add_aov_option(command, options.aovs);
     add_encoding_options(command, options.encoding);
+    add_memory_options(command, options);
 }
 
 }  // namespace sahl::cli

@@ -22,6 +22,8 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     std::vector<Aov> aovs;
     OutputSettings encoding;
+    std::optional<std::uint64_t> max_memory;  ///< bytes
+    bool dry_run = false;
 };
 
 /// The scene, the images, their content and their encoding. `options` has to outlive `command`.

@@ -4,16 +4,38 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/memory_report.h"
 #include "cli/standard_output.h"
 
 namespace sahl::cli {
 
 namespace {
 
-std::string paths_of(const Rendered& image) {
-    std::string text;
-    for (const Output& output : image.outputs) text += (text.empty() ? "" : ", ") + output.path.string();
-    return text;
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> paths_of(const std::vector<Output>& outputs) {
+    std::vector<std::string> paths;
+    for (const Output& output : outputs) paths.push_back(output.path.string());
+    return paths;
+}
+
+/// What is to be rendered on what.
+Json job_event(const char* name, const RenderOptions& options, const Job& job, const DeviceInfo& device) {
+    const RenderSettings& settings = job.settings;
+    Json event{{"event", name},
+               {"version", SAHL_VERSION},
+               {"scene", options.scene},
+               {"camera", job.camera},
+               {"width", settings.resolution.width},
+               {"height", settings.resolution.height},
+               {"depths", job.depths},
+               {"spp", settings.spp},
+               {"seed", settings.seed},
+               {"device", device.name},
+               {"driver", device.driver}};
+    if (const auto& crop = settings.crop) event["crop"] = {crop->x0, crop->y0, crop->x1, crop->y1};
+    if (const auto& samples = settings.samples) event["samples"] = {samples->begin, samples->end};
+    return event;
 }
 
 GenerationCounts total(const RenderStatistics& statistics) {
@@ -28,32 +50,50 @@ GenerationCounts total(const RenderStatistics& statistics) {
 
 bool is_partial(const Rendered& image) { return image.statistics.finished_pixels < pixel_count(image.size); }
 
-void print_start(const RenderOptions& options, const RenderSettings& settings, const std::vector<int>& depths,
-                 const std::string& camera, const DeviceInfo& device, const BvhStatistics& bvh) {
-    nlohmann::ordered_json event{{"event", "start"},
-                                 {"version", SAHL_VERSION},
-                                 {"scene", options.scene},
-                                 {"camera", camera},
-                                 {"width", settings.resolution.width},
-                                 {"height", settings.resolution.height},
-                                 {"depths", depths},
-                                 {"spp", settings.spp},
-                                 {"seed", settings.seed},
-                                 {"device", device.name},
-                                 {"driver", device.driver},
-                                 {"primitives", bvh.primitives},
-                                 {"bvh_seconds", bvh.build_seconds}};
-    if (const auto& crop = settings.crop) event["crop"] = {crop->x0, crop->y0, crop->x1, crop->y1};
+void print_start(const RenderOptions& options, const Job& job, const DeviceInfo& device,
+                 const BvhStatistics& bvh) {
+    Json event = job_event("start", options, job, device);
+    event["primitives"] = bvh.primitives;
+    event["bvh_seconds"] = bvh.build_seconds;
     print_event(event);
 }
 
+void print_dry_run(const RenderOptions& options, const Job& job, const DeviceInfo& device,
+                   const MemoryPlan& plan, std::uint64_t limit, bool json) {
+    const Resolution& size = job.settings.resolution;
+    if (json) {
+        Json event = job_event("plan", options, job, device);
+        Json outputs = Json::array();
+        for (const std::vector<Output>& files : job.outputs) outputs.push_back(paths_of(files));
+        event["outputs"] = outputs;
+        Json memory;
+        for (const auto& [name, bytes] : memory_parts(plan)) memory[name] = bytes;
+        memory["limit"] = limit;
+        memory["runtime_base"] = runtime_base_bytes;
+        event["memory"] = memory;
+        event["ray_budget"] = plan.ray_budget;
+        print_event(event);
+        return;
+    }
+    std::string text = fmt::format("{:<18}{}\n{:<18}{}, {}x{}, {} samples a pixel\n", "scene", options.scene,
+                                   "image", job.camera, size.width, size.height, job.settings.spp);
+    for (std::size_t i = 0; i < job.depths.size(); ++i) {
+        text += fmt::format("{:<18}{}\n", fmt::format("depth {}", job.depths[i]),
+                            fmt::join(paths_of(job.outputs[i]), ", "));
+    }
+    text += fmt::format("{:<18}{}\n{:<18}batches of {} rays; limit {}\n{}", "device", device.name, "memory",
+                        plan.ray_budget, human_size(limit), memory_lines(plan));
+    text += fmt::format("  {:<16}{:>12}  the OpenCL driver and libraries, beside the total\n", "base",
+                        human_size(runtime_base_bytes));
+    print(text);
+}
+
 void print_image(const Rendered& image) {
-    nlohmann::ordered_json generations = nlohmann::ordered_json::array();
+    Json generations = Json::array();
     for (const GenerationCounts& generation : image.statistics.generations) {
         generations.push_back({{"rays", generation.rays}, {"shadow_rays", generation.shadow_rays}});
     }
-    nlohmann::ordered_json paths = nlohmann::ordered_json::array();
-    for (const Output& output : image.outputs) paths.push_back(output.path.string());
+    const std::vector<std::string> paths = paths_of(image.outputs);
     const GenerationCounts rays = total(image.statistics);
     print_event({{"event", "image"},
                  {"path", paths.front()},
@@ -74,19 +114,20 @@ void say_image(const Rendered& image) {
     const GenerationCounts rays = total(image.statistics);
     const double seconds = image.statistics.seconds;
     const double rate = seconds > 0 ? static_cast<double>(rays.rays + rays.shadow_rays) / seconds : 0;
-    fmt::print(stderr, "wrote {}  {}x{}, depth {}, {} spp, {:.2f} s, {}rays/s\n", paths_of(image),
-               image.size.width, image.size.height, image.settings.depth, image.settings.spp, seconds,
-               with_prefix(rate));
+    fmt::print(stderr, "wrote {}  {}x{}, depth {}, {} spp, {:.2f} s, {}rays/s\n",
+               fmt::join(paths_of(image.outputs), ", "), image.size.width, image.size.height,
+               image.settings.depth, image.settings.spp, seconds, with_prefix(rate));
 }
 
 void warn_of_lost_light(const Rendered& image) {
     if (image.non_finite > 0) {
         log_warning(fmt::format("{}: {} contributions were no finite numbers and count as black",
-                                paths_of(image), image.non_finite));
+                                fmt::join(paths_of(image.outputs), ", "), image.non_finite));
     }
     if (image.clamped > 0) {
         log_warning(fmt::format("{}: {} contributions were brighter than {} and were cut to that",
-                                paths_of(image), image.clamped, Film::max_contribution));
+                                fmt::join(paths_of(image.outputs), ", "), image.clamped,
+                                Film::max_contribution));
     }
 }
 

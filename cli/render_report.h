@@ -16,6 +16,14 @@ struct Output {
     OutputSettings encoding;
 };
 
+/// All images of a run, before anything is traced.
+struct Job {
+    RenderSettings settings;                   ///< but for the depth
+    std::vector<int> depths;                   ///< an image each
+    std::vector<std::vector<Output>> outputs;  ///< for each depth
+    std::string camera;
+};
+
 /// One finished image, in all its files.
 struct Rendered {
     std::vector<Output> outputs;
@@ -35,8 +43,12 @@ constexpr std::uint64_t pixel_count(const Resolution& size) {
 bool is_partial(const Rendered& image);
 
 /// The first event of `--json`.
-void print_start(const RenderOptions& options, const RenderSettings& settings, const std::vector<int>& depths,
-                 const std::string& camera, const DeviceInfo& device, const BvhStatistics& bvh);
+void print_start(const RenderOptions& options, const Job& job, const DeviceInfo& device,
+                 const BvhStatistics& bvh);
+
+/// What `--dry-run` says: a text or an event on standard output.
+void print_dry_run(const RenderOptions& options, const Job& job, const DeviceInfo& device,
+                   const MemoryPlan& plan, std::uint64_t limit, bool json);
 
 /// The event of a finished image.
 void print_image(const Rendered& image);

@@ -1,12 +1,12 @@
 // Comparison masks as integers: AVX-512, AVX2 and plain OpenCL behind one set of names.
 // Bit k of a mask is lane k; comparisons with NaN are false. SAHL_PLAIN_OPENCL forces the plain
-// version, which other CPUs and GPUs use.
+// version, which other CPUs and GPUs use; SAHL_NO_AVX512 that of AVX2 where it is to be had.
 #ifndef SAHL_SIMD_H
 #define SAHL_SIMD_H
 
 #include "kernels/math.h"
 
-#if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(SAHL_PLAIN_OPENCL)
+#if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(SAHL_NO_AVX512) && !defined(SAHL_PLAIN_OPENCL)
 
 // The immediate is the predicate of vcmpps: 2 is <=, 13 is >=, ordered.
 #define SAHL_LE_OS 2

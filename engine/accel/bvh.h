@@ -49,6 +49,12 @@ struct Bvh {
     BvhStatistics statistics;
 };
 
+/// As many nodes as the tree over `primitives` primitives has, or more.
+/// A node with fewer than eight children has leaves alone, at least two. With b of those, i others and
+/// l leaves below these: 8 i + 1 = i + b + l and 2 b + l <= primitives, so that i + b is largest
+/// where l = 0, which is 4/7 of the primitives.
+constexpr std::uint64_t most_nodes(std::uint64_t primitives) { return 4 * primitives / 7 + 1; }
+
 /// Lines of 64 bytes of a block of `kind`; none for instances.
 std::uint32_t block_lines(std::uint32_t kind);
 

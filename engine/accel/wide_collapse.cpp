@@ -139,6 +139,9 @@ device::BvhNode empty_node() {
 }
 
 void collapse(const BinaryTree& tree, std::span<const BuildPrimitive> primitives, Bvh& bvh) {
+    // Only what is used of it becomes memory, and none is moved.
+    bvh.nodes.reserve(most_nodes(primitives.size()));
+    bvh.leaves.reserve(primitives.size());
     const Collapse step{tree, primitives, bvh};
     step.add_node(step.open(step.subtree(tree.root, 0, static_cast<std::uint32_t>(primitives.size()))));
 }

@@ -35,14 +35,14 @@ cl_map_flags map_flags(MapMode mode) {
 /// The OpenCL buffer over `impl.memory`, or one of the driver's where that is empty.
 void create(Buffer::Impl& impl) {
     void* pointer = impl.memory.data();
+    if (pointer == nullptr) {
+        impl.driver_memory = MemoryReservation(impl.device.memory(), impl.bytes, impl.name);
+    }
     const cl_mem_flags place = pointer != nullptr ? CL_MEM_USE_HOST_PTR : 0;
     cl_int status = CL_SUCCESS;
     impl.buffer =
         cl::Buffer(impl.device.impl().context, CL_MEM_READ_WRITE | place, impl.bytes, pointer, &status);
     check_cl(status, fmt::format("creating buffer {} of {} bytes", impl.name, impl.bytes));
-    if (pointer != nullptr) return;
-    impl.device.memory().add(impl.bytes);
-    impl.accounted = impl.bytes;
 }
 
 }  // namespace
@@ -51,18 +51,17 @@ Buffer::Impl::~Impl() {
     // Queued kernels may still work on memory that is ours to unmap.
     if (memory.data() != nullptr) device.impl().queue.finish();
     buffer = cl::Buffer();
-    device.memory().remove(accounted);
 }
 
 Buffer::Buffer(Device& device, std::size_t bytes, std::string name)
-    : impl_(new Impl{device, std::move(name), bytes == 0 ? smallest : bytes, 0, {}, {}}) {
+    : impl_(new Impl{device, std::move(name), bytes == 0 ? smallest : bytes, {}, {}, {}}) {
     check_size(device, impl_->bytes, impl_->name);
     if (device.zero_copy()) impl_->memory = HostMemory(device.memory(), impl_->bytes, impl_->name);
     create(*impl_);
 }
 
 Buffer::Buffer(Device& device, HostMemory&& memory, std::string name)
-    : impl_(new Impl{device, std::move(name), memory.size() == 0 ? smallest : memory.size(), 0, {}, {}}) {
+    : impl_(new Impl{device, std::move(name), memory.size() == 0 ? smallest : memory.size(), {}, {}, {}}) {
     check_size(device, impl_->bytes, impl_->name);
     if (device.zero_copy() && memory.size() > 0) {
         impl_->memory = std::move(memory);
@@ -80,6 +79,10 @@ Buffer::Buffer() = default;
 Buffer::~Buffer() = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;
+
+std::size_t Buffer::footprint(std::size_t bytes) {
+    return HostMemory::mapped_bytes(std::max(bytes, smallest));
+}
 
 std::size_t Buffer::bytes() const { return impl_->bytes; }
 

@@ -35,6 +35,9 @@ public:
     std::size_t bytes() const;
     const std::string& name() const;
 
+    /// What the accountant counts for a buffer of `bytes`, at most.
+    static std::size_t footprint(std::size_t bytes);
+
     /// Copies `values` to the start of the buffer (blocking).
     template <class T>
     void write(std::span<const T> values) {

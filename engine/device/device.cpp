@@ -126,7 +126,10 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
     impl_->platform_version = chosen.platform_version;
     impl_->device = chosen.device;
     const std::size_t largest_group = device_info<CL_DEVICE_MAX_WORK_GROUP_SIZE>(chosen.device);
-    impl_->local_size = std::min(chosen.info.is_cpu ? cpu_local_size : gpu_local_size, largest_group);
+    const std::size_t best_group = chosen.info.is_cpu ? cpu_local_size : gpu_local_size;
+    impl_->local_size =
+        std::min(options.work_group_size > 0 ? options.work_group_size : best_group, largest_group);
+    impl_->build_options = options.build_options;
     impl_->rays_per_item = chosen.info.is_cpu ? cpu_rays_per_item : gpu_rays_per_item;
     cl_int status = CL_SUCCESS;
     impl_->context = cl::Context(impl_->device, nullptr, nullptr, nullptr, &status);
@@ -144,6 +147,8 @@ bool Device::zero_copy() const { return impl_->info.is_cpu; }
 std::size_t Device::local_size() const { return impl_->local_size; }
 
 std::uint32_t Device::rays_per_item() const { return impl_->rays_per_item; }
+
+const std::string& Device::build_options() const { return impl_->build_options; }
 
 std::size_t Device::max_work_items() const { return impl_->info.is_pocl ? pocl_small_grid : SIZE_MAX; }
 

@@ -30,6 +30,10 @@ struct DeviceInfo {
 struct DeviceOptions {
     std::string selector;  ///< empty: PoCL's CPU; digits: an index; else part of a name
     int threads = 0;  ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
+    std::size_t work_group_size = 0;  ///< work-items; 0: the device's best. No image depends on it
+    /// More options for the OpenCL compiler: -DSAHL_PLAIN_OPENCL for kernels without the host's SIMD
+    /// builtins, -DSAHL_NO_AVX512 for those of AVX2 at most. No image depends on them.
+    std::string build_options{};
 };
 
 /// All OpenCL devices in platform order.
@@ -54,6 +58,9 @@ public:
     std::size_t local_size() const;
     /// Rays that one work-item handles one after the other (SAHL_RAYS_PER_ITEM in the kernels).
     std::uint32_t rays_per_item() const;
+
+    /// DeviceOptions::build_options.
+    const std::string& build_options() const;
 
     /// Most work-items of one launch. PoCL compiles a kernel once more for grids beyond it.
     std::size_t max_work_items() const;

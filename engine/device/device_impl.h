@@ -29,6 +29,7 @@ struct Device::Impl {
     std::string platform_version;
     std::size_t local_size = 1;
     std::uint32_t rays_per_item = 1;
+    std::string build_options;
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;
@@ -40,8 +41,8 @@ struct Buffer::Impl {
     Device& device;
     std::string name;
     std::size_t bytes;
-    std::size_t accounted = 0;  ///< of the driver's memory; HostMemory accounts for itself
-    HostMemory memory;          ///< behind `buffer` on zero-copy devices; empty elsewhere
+    MemoryReservation driver_memory;  ///< HostMemory accounts for itself
+    HostMemory memory;                ///< behind `buffer` on zero-copy devices; empty elsewhere
     cl::Buffer buffer;
 
     ~Impl();

@@ -77,9 +77,10 @@ std::string cpu_model() {
 
 std::string cache_key(Device& device, const KernelSource& source, const std::string& options) {
     const DeviceInfo& info = device.info();
-    return fmt::format("options {}\ndevice {}\nvendor {}\nversion {}\ndriver {}\nplatform {}, {}\n{}\n{}",
-                       options, info.name, info.vendor, info.version, info.driver, info.platform,
-                       device.impl().platform_version, info.is_cpu ? cpu_model() : "", source.text);
+    return fmt::format(
+        "options {}\nlocal size {}\ndevice {}\nvendor {}\nversion {}\ndriver {}\nplatform {}, {}\n{}\n{}",
+        options, device.local_size(), info.name, info.vendor, info.version, info.driver, info.platform,
+        device.impl().platform_version, info.is_cpu ? cpu_model() : "", source.text);
 }
 
 /// The program from a cached binary; nothing if the driver does not take it.
@@ -114,7 +115,9 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
 
 std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
     std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
-    if (!more.empty()) options += " " + more;
+    for (const std::string& option : {device.build_options(), more}) {
+        if (!option.empty()) options += " " + option;
+    }
     std::shared_ptr<Program::Impl> impl(new Program::Impl{device, cache_key(device, source, options)});
     const std::optional<CachedProgram> cached = load_program(impl->key);
     const auto from_source = [&] { impl->program = build_from_source(device, source, options); };

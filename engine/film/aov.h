@@ -40,6 +40,12 @@ inline constexpr std::array aov_names{
 
 constexpr const AovName& aov_name(Aov aov) { return aov_names[static_cast<std::size_t>(aov)]; }
 
+/// Bytes of a pixel in an AovImage.
+constexpr std::uint64_t aov_pixel_bytes(Aov aov) {
+    const std::size_t components = aov_name(aov).components.size();
+    return sizeof(float) * (components > 0 ? components : 1);
+}
+
 constexpr std::uint32_t no_aov_id = 0xffffffff;
 
 /// One AOV of an image, row-major from the top left: `values` with 1 (depth) or 3 interleaved floats

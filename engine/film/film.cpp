@@ -61,7 +61,8 @@ void add_to(std::int64_t& sum, std::int64_t value) {
 Film::Film(MemoryAccountant& accountant, int width, int height)
     : width_(width),
       height_(height),
-      memory_(accountant, film_bytes(width, height), "film"),
+      memory_(accountant,
+              film_pixel_bytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), "film"),
       sums_(static_cast<std::int64_t*>(memory_.data()), memory_.size() / sizeof(std::int64_t)) {}
 
 void Film::add(std::span<const std::uint32_t> pixels, const float* red, const float* green,

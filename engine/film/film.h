@@ -19,10 +19,8 @@ struct Image {
     std::vector<float> pixels;
 };
 
-/// What a Film of this size takes.
-constexpr std::size_t film_bytes(int width, int height) {
-    return 3 * sizeof(std::int64_t) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-}
+/// What a Film takes for a pixel.
+inline constexpr std::size_t film_pixel_bytes = 3 * sizeof(std::int64_t);
 
 /// Sums are taken modulo 2^64 and are right whenever the true sum lies within ±2^31, whatever came in
 /// between: for every pixel whose resolved value is below 131072 at 16384 samples. One thread at a time.

@@ -28,6 +28,20 @@ OIIO::TypeDesc type_of(Aov aov, const Encoding& encoding) {
 
 int channels_of(Aov aov) { return std::max(static_cast<int>(aov_name(aov).components.size()), 1); }
 
+constexpr int band_rows = 256;  ///< whole compression blocks of EXR (16, 32 or 256 rows) and TIFF (32)
+
+/// All channels of a pixel, uncompressed; HDR's four bytes count as three floats.
+std::uint64_t pixel_bytes(const Encoding& encoding, std::span<const Aov> aovs) {
+    std::uint64_t bytes = 3 * type_of(encoding.pixel_type).size();
+    for (const Aov aov : aovs)
+        bytes += static_cast<std::uint64_t>(channels_of(aov)) * type_of(aov, encoding).size();
+    return bytes;
+}
+
+/// Of a file with `raw` bytes of pixels: compression can make noise larger (LZW by half), and there are
+/// headers.
+std::uint64_t most_file_bytes(std::uint64_t raw) { return raw + raw / 2 + (std::uint64_t{1} << 20U); }
+
 void add_channels(OIIO::ImageSpec& spec, std::span<const AovImage> aovs, const Encoding& encoding) {
     if (aovs.empty()) return;
     spec.channelformats.assign(3, spec.format);
@@ -164,10 +178,24 @@ void check_aovs(const fs::path& path, const Image& image, std::span<const AovIma
 
 }  // namespace
 
+std::uint64_t encoder_bytes(const Encoding& encoding, int width, int height, std::span<const Aov> aovs) {
+    const std::uint64_t pixel = pixel_bytes(encoding, aovs);
+    const std::uint64_t row = pixel * static_cast<std::uint64_t>(width);
+    // Floats, what they become, and what the library makes of that before and while it compresses.
+    const auto rows = static_cast<std::uint64_t>(std::min(band_rows, height));
+    const std::uint64_t bands = rows * (static_cast<std::uint64_t>(width) * 3 * sizeof(float) + 4 * row);
+    return most_file_bytes(row * static_cast<std::uint64_t>(height)) + bands;
+}
+
 std::vector<unsigned char> encode(const fs::path& path, const Image& image, std::span<const AovImage> aovs,
                                   const Encoding& encoding, const OutputSettings& settings) {
     check_aovs(path, image, aovs);
     std::vector<unsigned char> file;
+    std::vector<Aov> layers;
+    for (const AovImage& aov : aovs) layers.push_back(aov.aov);
+    // Room for the whole file, of which only what is used becomes memory: growing would copy it.
+    file.reserve(most_file_bytes(pixel_bytes(encoding, layers) * static_cast<std::uint64_t>(image.width) *
+                                 static_cast<std::uint64_t>(image.height)));
     OIIO::Filesystem::IOVecOutput memory(file);
     const auto output = OIIO::ImageOutput::create(encoding.format->name);
     const auto check = [&](bool done) {
@@ -180,9 +208,8 @@ std::vector<unsigned char> encode(const fs::path& path, const Image& image, std:
     check(output->open(std::string("memory") + std::string(encoding.format->extensions.front()),
                        spec_of(image, aovs, encoding, settings)));
     BandEncoder bands(image, aovs, encoding, settings.exposure);
-    constexpr int band = 256;  // whole compression blocks of EXR (16, 32 or 256 rows) and TIFF (32)
-    for (int y = 0; y < image.height; y += band) {
-        const int y_end = std::min(y + band, image.height);
+    for (int y = 0; y < image.height; y += band_rows) {
+        const int y_end = std::min(y + band_rows, image.height);
         check(output->write_scanlines(y, y_end, 0, bands.type(), bands.encode(y, y_end)));
     }
     check(output->close());

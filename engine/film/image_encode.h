@@ -1,6 +1,7 @@
 // An image file's bytes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "engine/film/image_format.h"
 
 namespace sahl {
+
+/// What encode() takes beside its arguments, at most: the file and the bands on their way into it.
+std::uint64_t encoder_bytes(const Encoding& encoding, int width, int height, std::span<const Aov> aovs);
 
 /// `image` with `aovs` as write_image stores them, converted and encoded a band of rows at a time.
 /// `path` is for messages. Throws Error(output) for what fails, Error(usage) for AOVs that the format

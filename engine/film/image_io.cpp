@@ -16,6 +16,11 @@ void check_output(const fs::path& path, const OutputSettings& settings) {
     check_output_file(path);
 }
 
+std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings, int width, int height,
+                            std::span<const Aov> aovs) {
+    return encoder_bytes(encoding_of(path, settings), width, height, aovs);
+}
+
 void write_image(const fs::path& path, const Image& image, const OutputSettings& settings,
                  std::span<const AovImage> aovs) {
     const std::vector<unsigned char> file = encode(path, image, aovs, encoding_of(path, settings), settings);

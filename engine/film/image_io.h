@@ -1,6 +1,7 @@
 // Image files through OpenImageIO: what each format can hold, writing and reading.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -53,6 +54,11 @@ std::vector<OutputSettings> settings_for(std::span<const std::filesystem::path> 
 /// for settings that the format cannot hold, listing what it can; Error(output) for a path that
 /// cannot be written (see check_output_file). Changes nothing.
 void check_output(const std::filesystem::path& path, const OutputSettings& settings);
+
+/// What write_image takes of memory beside the image and the AOVs, at most: the file and bands of rows
+/// on their way into it. Throws as check_output does for what the format cannot hold.
+std::uint64_t encoder_bytes(const std::filesystem::path& path, const OutputSettings& settings, int width,
+                            int height, std::span<const Aov> aovs);
 
 /// Writes `image` (3 channels) in the format of the extension, encoded in memory first, then as
 /// write_file does. A special file without an extension, such as /dev/null, gets a PNG.

@@ -11,27 +11,58 @@
 namespace sahl {
 namespace {
 
-template <class T>
-Buffer upload(Device& device, const std::vector<T>& values, std::string name) {
-    Buffer buffer(device, values.size() * sizeof(T), std::move(name));
-    buffer.write(std::span<const T>(values));
-    return buffer;
+/// Moves the host's arrays to a device, one after the other, so that only one at a time is on both.
+class Uploader {
+public:
+    Uploader(Device& device, MemoryReservation& host) : device_(device), host_(host) {}
+
+    template <class T>
+    Buffer move(std::vector<T>& values, std::string name) {
+        const std::size_t bytes = values.size() * sizeof(T);
+        Buffer buffer(device_, bytes, std::move(name));
+        buffer.write(std::span<const T>(values));
+        values = {};
+        host_.give_back(bytes);
+        return buffer;
+    }
+
+private:
+    Device& device_;
+    MemoryReservation& host_;
+};
+
+/// What Uploader gives back, and the trees' leaves.
+std::uint64_t bytes_of(const HostScene& host) {
+    const auto bytes = [](const auto& values) { return std::span(values).size_bytes(); };
+    const LoweredScene& lowered = host.lowered;
+    return bytes(host.bvh.nodes) + bytes(host.bvh.leaves) + bytes(host.instances) +
+           bytes(lowered.primitives) + bytes(lowered.shape_data) + bytes(lowered.polygon_vertices) +
+           bytes(lowered.materials) + bytes(lowered.textures) + bytes(lowered.lights);
 }
 
 }  // namespace
 
-DeviceScene make_device_scene(Device& device, const Scene& scene) {
-    const HostScene host = make_host_scene(scene);
+DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRequest& job) {
+    MemoryAccountant& accountant = device.memory();
+    check_room_to_build(scene, job, accountant.limit());
+    const SceneMemory bound = bound_scene_memory(scene);
+    MemoryReservation held(accountant, bound.loaded + bound.building, "the scene and its trees");
+    HostScene host = make_host_scene(scene);
     DeviceScene out;
-    out.nodes = upload(device, host.bvh.nodes, "BVH nodes");
-    out.leaves = Buffer(device, pack_leaf_blocks(device.memory(), scene, host), "leaf blocks");
-    out.polygon_vertices = upload(device, host.lowered.polygon_vertices, "polygon vertices");
-    out.instances = upload(device, host.instances, "instances");
-    out.primitives = upload(device, host.lowered.primitives, "primitives");
-    out.shape_data = upload(device, host.lowered.shape_data, "shape data");
-    out.materials = upload(device, host.lowered.materials, "materials");
-    out.textures = upload(device, host.lowered.textures, "textures");
-    out.lights = upload(device, host.lowered.lights, "lights");
+    out.plan = plan_memory(measure_scene_memory(scene, host), job, accountant.limit());
+    held.give_back(bound.building);
+
+    MemoryReservation building(accountant, bytes_of(host), "the scene for the device");
+    Uploader upload(device, building);
+    out.nodes = upload.move(host.bvh.nodes, "BVH nodes");
+    out.leaves = Buffer(device, pack_leaf_blocks(accountant, scene, host), "leaf blocks");
+    out.polygon_vertices = upload.move(host.lowered.polygon_vertices, "polygon vertices");
+    out.instances = upload.move(host.instances, "instances");
+    out.primitives = upload.move(host.lowered.primitives, "primitives");
+    out.shape_data = upload.move(host.lowered.shape_data, "shape data");
+    out.materials = upload.move(host.lowered.materials, "materials");
+    out.textures = upload.move(host.lowered.textures, "textures");
+    out.lights = upload.move(host.lowered.lights, "lights");
     out.constants = host.constants;
     out.bvh_statistics = host.bvh.statistics;
     return out;

@@ -118,10 +118,12 @@ HostScene make_host_scene(const Scene& scene) {
     HostScene out;
     out.lowered = lower_scene(scene);
     std::vector<BuildPrimitive> primitives = std::exchange(out.lowered.build_primitives, {});
-    std::vector<BuildPrimitive> world(primitives.begin(), primitives.begin() + world_primitive_count(scene));
+    const std::vector<PlacedGroup> placed = place_instances(scene);
+    std::vector<BuildPrimitive> world;
+    world.reserve(world_primitive_count(scene) + placed.size());
+    world.assign(primitives.begin(), primitives.begin() + world_primitive_count(scene));
 
     GroupTrees trees(scene, primitives);
-    const std::vector<PlacedGroup> placed = place_instances(scene);
     out.instances.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
         const PlacedGroup& instance = placed[i];

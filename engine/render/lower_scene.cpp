@@ -373,6 +373,27 @@ device::DeviceTexture lower_texture(const Texture& texture) {
 
 }  // namespace
 
+std::size_t polygon_vertex_count(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        if (primitive.kind == PrimitiveKind::polygon) count += scene.polygons[primitive.index].vertex_count;
+    }
+    return count;
+}
+
+std::size_t most_shape_data(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Primitive& primitive : scene.primitives) {
+        if (primitive.kind != PrimitiveKind::triangle) {
+            count += 26;  // the most of all kinds
+            continue;
+        }
+        const Triangle& triangle = scene.triangles[primitive.index];
+        count += 9U + (triangle.smooth ? 9U : 0U) + (scene.textures.empty() ? 0U : 6U);
+    }
+    return count;
+}
+
 LoweredScene lower_scene(const Scene& scene) {
     const std::size_t count = scene.primitives.size();
     if (count > SAHL_MAX_PRIMITIVES) {
@@ -381,6 +402,8 @@ LoweredScene lower_scene(const Scene& scene) {
                                          " are possible; split the scene");
     }
     LoweredScene out;
+    out.shape_data.reserve(most_shape_data(scene));
+    out.polygon_vertices.reserve(3 * polygon_vertex_count(scene));
     out.primitives.reserve(count);
     out.build_primitives.reserve(count);
     Lowering lowering(scene, out);

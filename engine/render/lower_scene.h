@@ -27,6 +27,12 @@ struct LoweredScene {
 /// finite.
 LoweredScene lower_scene(const Scene& scene);
 
+/// Vertices of all polygons, those of polygons that are there several times as often.
+std::size_t polygon_vertex_count(const Scene& scene);
+
+/// As many floats as LoweredScene::shape_data has for `scene`, or more.
+std::size_t most_shape_data(const Scene& scene);
+
 /// The word that stands for primitive `id` in a leaf block (SAHL_ID_*).
 std::uint32_t block_id(const Scene& scene, std::uint32_t id);
 

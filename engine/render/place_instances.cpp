@@ -51,9 +51,13 @@ void place(const Scene& scene, const std::vector<Instance>& instances, const glm
 
 }  // namespace
 
+std::uint64_t count_placed_instances(const Scene& scene) {
+    return InstanceCounter(scene).count(scene.instances, 0);
+}
+
 std::vector<PlacedGroup> place_instances(const Scene& scene) {
     std::vector<PlacedGroup> placed;
-    placed.reserve(InstanceCounter(scene).count(scene.instances, 0));
+    placed.reserve(count_placed_instances(scene));
     place(scene, scene.instances, glm::dmat4(1), placed);
     return placed;
 }

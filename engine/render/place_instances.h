@@ -21,4 +21,7 @@ struct PlacedGroup {
 /// 64, which groups that contain themselves are.
 std::vector<PlacedGroup> place_instances(const Scene& scene);
 
+/// How many that are. Throws as place_instances.
+std::uint64_t count_placed_instances(const Scene& scene);
+
 }  // namespace sahl

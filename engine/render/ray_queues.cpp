@@ -11,17 +11,10 @@ namespace {
 
 constexpr std::size_t word = 4;
 
-std::uint32_t array_length(std::uint32_t rays) {
-    constexpr std::uint32_t line = 16;
-    constexpr std::uint32_t page = 1024;
-    const std::uint32_t length = std::max((rays + line - 1) / line, 1U) * line;
-    return length % page == 0 ? length - line : length;
-}
-
 /// Bytes of each buffer.
 struct Sizes {
     Sizes(std::uint32_t capacity, std::uint32_t light_count)
-        : array(capacity * word),
+        : array(std::size_t{capacity} * word),
           blocks((capacity + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK),
           shadow_light(3 * light_count * array) {}
 
@@ -39,20 +32,40 @@ struct Sizes {
     std::size_t totals = 3 * word;
     std::size_t light = 3 * array;
     std::size_t pixels = array;
+
+    std::size_t largest() const { return std::max(2 * rays, shadow_light); }
 };
 
 }  // namespace
 
-std::size_t ray_queue_bytes(std::uint32_t ray_capacity, int depth, std::uint32_t light_count) {
-    const Sizes size(array_length(ray_capacity), light_count);
-    const auto batches = static_cast<std::size_t>(depth) + 1;
-    return (batches + 2) * (size.rays + size.ids) + size.hits + size.hit_ids + size.shadow_surfaces +
-           size.shadow_light + size.outcomes + size.block_counts + size.block_shadow_rays + size.totals +
-           2 * (size.light + size.pixels);
+std::uint32_t ray_capacity(std::uint32_t rays) {
+    constexpr std::uint32_t line = 16;
+    constexpr std::uint32_t page = 1024;
+    const std::uint32_t length = std::max((rays + line - 1) / line, 1U) * line;
+    return length % page == 0 ? length - line : length;
 }
 
-RayQueues::RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count)
-    : capacity(array_length(ray_capacity)) {
+std::size_t ray_queue_bytes(std::uint32_t rays, int depth, std::uint32_t light_count) {
+    const Sizes size(ray_capacity(rays), light_count);
+    const auto batches = static_cast<std::size_t>(depth) + 1;
+    const auto footprint = Buffer::footprint;
+    return batches * (footprint(size.rays) + footprint(size.ids)) + footprint(2 * size.rays) +
+           footprint(2 * size.ids) + footprint(size.hits) + footprint(size.hit_ids) +
+           footprint(size.shadow_surfaces) + footprint(size.shadow_light) + footprint(size.outcomes) +
+           footprint(size.block_counts) + footprint(size.block_shadow_rays) + footprint(size.totals) +
+           2 * (footprint(size.light) + footprint(size.pixels));
+}
+
+std::uint32_t most_rays(const Device& device, std::uint32_t light_count) {
+    const std::uint64_t launchable = std::uint64_t{device.max_work_items()} * device.rays_per_item();
+    auto rays = static_cast<std::uint32_t>(std::min(launchable, std::uint64_t{1} << 30U));
+    while (rays > 1 && Sizes(ray_capacity(rays), light_count).largest() > device.info().max_allocation)
+        rays /= 2;
+    return rays;
+}
+
+RayQueues::RayQueues(Device& device, std::uint32_t rays, int depth, std::uint32_t light_count)
+    : capacity(ray_capacity(rays)) {
     const Sizes size(capacity, light_count);
     for (int i = 0; i <= depth; ++i) {
         const std::string name = "ray batch " + std::to_string(i);

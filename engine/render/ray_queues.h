@@ -22,13 +22,19 @@ struct Contributions {
     Buffer pixels;
 };
 
-/// What RayQueues of these arguments allocate, without what the device rounds up.
-std::size_t ray_queue_bytes(std::uint32_t ray_capacity, int depth, std::uint32_t light_count);
+/// RayQueues::capacity for batches of `rays` rays: whole cache lines, and no multiple of 4 KB, at which
+/// the arrays of a batch would compete for the same sets of the cache.
+std::uint32_t ray_capacity(std::uint32_t rays);
+
+/// What RayQueues of these arguments allocate.
+std::size_t ray_queue_bytes(std::uint32_t rays, int depth, std::uint32_t light_count);
+
+/// The most rays of a batch that `device` can launch and hold, no buffer being larger than it gives.
+std::uint32_t most_rays(const Device& device, std::uint32_t light_count);
 
 struct RayQueues {
-    /// All buffers for batches of about `ray_capacity` rays: whole cache lines, and no multiple of
-    /// 4 KB, at which the arrays of a batch would compete for the same sets of the cache.
-    RayQueues(Device& device, std::uint32_t ray_capacity, int depth, std::uint32_t light_count);
+    /// All buffers for batches of ray_capacity(rays) rays.
+    RayQueues(Device& device, std::uint32_t rays, int depth, std::uint32_t light_count);
 
     std::uint32_t capacity;
     /// The batch in work and those that wait: a generation leaves at most one waiting, so depth + 1.

@@ -37,17 +37,17 @@ std::uint64_t pixel_count(const Crop& crop) {
 }  // namespace
 
 struct Renderer::Impl {
-    Impl(Device& on, const Scene& scene)
+    Impl(Device& on, const Scene& scene, const MemoryRequest& job)
         : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(program) {
         test_before_first_use(on, program, kernels);
-        device_scene = make_device_scene(on, scene);
+        device_scene = make_device_scene(on, scene, job);
     }
 
-    /// Rays of a batch for a wave of `samples` or more waves.
-    std::uint32_t capacity(const RenderSettings& settings, std::uint64_t samples) const {
-        const std::uint64_t launchable = std::uint64_t{device.max_work_items()} * device.rays_per_item();
+    /// Rays of a batch, for `samples` of them in all.
+    std::uint32_t batch_size(const RenderSettings& settings, std::uint64_t samples) const {
+        const std::uint32_t most = most_rays(device, device_scene.constants.light_count);
         return static_cast<std::uint32_t>(
-            std::min({std::uint64_t{settings.ray_budget}, samples, launchable}));
+            std::min({std::uint64_t{settings.ray_budget}, samples, std::uint64_t{most}}));
     }
 
     Device& device;
@@ -57,11 +57,14 @@ struct Renderer::Impl {
     DeviceScene device_scene;
 };
 
-Renderer::Renderer(Device& device, const Scene& scene) : impl_(std::make_unique<Impl>(device, scene)) {}
+Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job)
+    : impl_(std::make_unique<Impl>(device, scene, job)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
 const BvhStatistics& Renderer::bvh_statistics() const { return impl_->device_scene.bvh_statistics; }
+
+const MemoryPlan& Renderer::memory_plan() const { return impl_->device_scene.plan; }
 
 RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
                                   const ProgressCallback& progress, const std::stop_token& stop) {
@@ -72,7 +75,7 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
     const device::CameraConstants camera =
         camera_constants(impl_->cameras[settings.camera], settings.resolution);
     const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
-    RayQueues queues(impl_->device, impl_->capacity(settings, samples), settings.depth,
+    RayQueues queues(impl_->device, impl_->batch_size(settings, samples), settings.depth,
                      impl_->device_scene.constants.light_count);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
     RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress, stop);
@@ -85,7 +88,7 @@ std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std:
     const device::CameraConstants camera =
         camera_constants(impl_->cameras[settings.camera], settings.resolution);
     const std::uint64_t pixels = pixel_count(crop);
-    RayQueues queues(impl_->device, impl_->capacity(settings, pixels), 0, 0);
+    RayQueues queues(impl_->device, impl_->batch_size(settings, pixels), 0, 0);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
     Program program = build_aov_program(impl_->device);
     Kernel describe = program.kernel("describe");

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -13,33 +12,11 @@
 #include "engine/device/device.h"
 #include "engine/film/aov.h"
 #include "engine/film/film.h"
+#include "engine/render/memory_plan.h"
+#include "engine/render/render_settings.h"
 #include "engine/scene/scene.h"
 
 namespace sahl {
-
-/// Pixels x0 <= x < x1, y0 <= y < y1 of the image, y down.
-struct Crop {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-};
-
-/// Samples begin <= i < end of each pixel.
-struct SampleRange {
-    int begin = 0, end = 0;
-
-    int count() const { return end - begin; }
-};
-
-struct RenderSettings {
-    Resolution resolution;
-    int depth = 5;  ///< generations after the camera ray; 0 is ray casting
-    int spp = 1;    ///< samples a pixel, 1..16384; 1 samples the pixel's centre
-    std::uint64_t seed = 0;
-    std::size_t camera = 0;              ///< in Scene::cameras
-    std::optional<SampleRange> samples;  ///< a part of the spp; none: all of them
-    std::optional<Crop> crop;            ///< none: the whole image
-    /// Rays of a batch. Does not change the image: what does not fit waits.
-    std::uint32_t ray_budget = 1u << 15;
-};
 
 /// Rays that were traced in one bounce generation, over all waves.
 struct GenerationCounts {
@@ -60,12 +37,15 @@ using ProgressCallback = std::function<void(std::uint64_t done, std::uint64_t to
 class Renderer {
 public:
     /// Throws Error(scene) for what the loaders cannot see (no primitive limit exceeded, finite
-    /// bounds), Error(device) and Error(memory) from below. `device` must outlive the renderer.
-    Renderer(Device& device, const Scene& scene);
+    /// bounds), Error(device) from below, and Error(memory) naming what would be enough when the scene and
+    /// `job` do not fit within the limit of the device's accountant. `device` must outlive the renderer.
+    Renderer(Device& device, const Scene& scene, const MemoryRequest& job = {});
     ~Renderer();
     Renderer(Renderer&&) noexcept;
 
     const BvhStatistics& bvh_statistics() const;
+    /// Of the scene and the job.
+    const MemoryPlan& memory_plan() const;
 
     /// Adds the image of `settings` into `film` (of the crop's size).
     /// A requested `stop` is heard within a generation of one batch. The pixels that are finished by then

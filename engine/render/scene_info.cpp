@@ -1,36 +1,21 @@
 #include "engine/render/scene_info.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "engine/render/host_scene.h"
-#include "engine/render/ray_queues.h"
-#include "engine/render/renderer.h"
 
 namespace sahl {
 namespace {
 
-template <class T>
-std::uint64_t bytes_of(const std::vector<T>& values) {
-    return values.size() * sizeof(T);
-}
-
-MemoryPlan plan_memory(const Scene& scene, const HostScene& host) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(scene.resolution.width) *
-                                 static_cast<std::uint64_t>(scene.resolution.height);
-    const auto rays =
-        static_cast<std::uint32_t>(std::min(std::uint64_t{RenderSettings{}.ray_budget}, pixels));
-    const LoweredScene& lowered = host.lowered;
-    MemoryPlan plan;
-    plan.nodes = bytes_of(host.bvh.nodes);
-    plan.leaf_blocks = std::uint64_t{host.bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES;
-    plan.shapes =
-        bytes_of(lowered.primitives) + bytes_of(lowered.shape_data) + bytes_of(lowered.polygon_vertices);
-    plan.instances = bytes_of(host.instances);
-    plan.materials = bytes_of(lowered.materials) + bytes_of(lowered.textures) + bytes_of(lowered.lights);
-    plan.ray_queues = ray_queue_bytes(rays, scene.depth, host.constants.light_count);
-    plan.film = film_bytes(scene.resolution.width, scene.resolution.height);
-    return plan;
+MemoryPlan memory_of(const Scene& scene, const HostScene& host) {
+    MemoryRequest request;
+    request.pixels = static_cast<std::uint64_t>(scene.resolution.width) *
+                     static_cast<std::uint64_t>(scene.resolution.height);
+    request.samples = request.pixels;
+    request.depth = scene.depth;
+    request.light_count = host.constants.light_count;
+    request.ray_budget = RenderSettings{}.ray_budget;
+    return plan_memory(measure_scene_memory(scene, host), request, UINT64_MAX);
 }
 
 /// Primitives of groups with those of the groups placed inside.
@@ -100,7 +85,7 @@ SceneInfo describe_scene(const Scene& scene) {
     info.bvh = host.bvh.statistics;
     info.nodes = host.bvh.nodes.size();
     info.leaves = host.bvh.leaves.size();
-    info.memory = plan_memory(scene, host);
+    info.memory = memory_of(scene, host);
     return info;
 }
 

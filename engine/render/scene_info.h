@@ -8,25 +8,10 @@
 
 #include "engine/accel/bounds.h"
 #include "engine/accel/bvh.h"
+#include "engine/render/memory_plan.h"
 #include "engine/scene/scene.h"
 
 namespace sahl {
-
-/// Bytes of what a render holds at the same time, at the default ray budget, one sample a pixel and
-/// the scene's depth and size. The OpenCL driver's own memory and that of encoding come on top.
-struct MemoryPlan {
-    std::uint64_t nodes = 0;
-    std::uint64_t leaf_blocks = 0;
-    std::uint64_t shapes = 0;  ///< what shading looks up
-    std::uint64_t instances = 0;
-    std::uint64_t materials = 0;  ///< textures and lights too
-    std::uint64_t ray_queues = 0;
-    std::uint64_t film = 0;
-
-    std::uint64_t total() const {
-        return nodes + leaf_blocks + shapes + instances + materials + ray_queues + film;
-    }
-};
 
 struct SceneInfo {
     std::array<std::uint64_t, 6> primitives{};  ///< by PrimitiveKind, each group's once
@@ -39,7 +24,7 @@ struct SceneInfo {
     std::uint64_t trees = 1;  ///< the world's and those of instanced groups
     std::uint64_t nodes = 0;  ///< of all trees
     std::uint64_t leaves = 0;
-    MemoryPlan memory;
+    MemoryPlan memory;  ///< of a render at the scene's depth and size, one sample a pixel, no files
     std::vector<std::string> unused_materials;  ///< that no primitive has
     std::vector<std::string> unused_groups;     ///< that no chain of instances leads to from the world
 };

@@ -46,7 +46,17 @@ std::vector<AovImage> blank_images(std::span<const Aov> aovs, std::size_t pixels
     return images;
 }
 
+std::size_t value_bytes(std::size_t rays) { return SAHL_AOV_FLOATS * rays * sizeof(float); }
+
+std::size_t id_bytes(std::size_t rays) { return SAHL_AOV_UINTS * rays * sizeof(std::uint32_t); }
+
 }  // namespace
+
+std::size_t aov_queue_bytes(std::uint32_t rays) {
+    const std::uint32_t capacity = ray_capacity(rays);
+    return ray_queue_bytes(rays, 0, 0) + Buffer::footprint(value_bytes(capacity)) +
+           Buffer::footprint(id_bytes(capacity));
+}
 
 Program build_aov_program(Device& device) { return {device, {"aov.cl"}}; }
 
@@ -58,8 +68,8 @@ std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
     RayQueues& queues = wavefront.queues;
     RayBatch& batch = queues.batches.front();
     const std::size_t capacity = queues.capacity;
-    Buffer values(device, SAHL_AOV_FLOATS * capacity * sizeof(float), "AOV values");
-    Buffer ids(device, SAHL_AOV_UINTS * capacity * sizeof(std::uint32_t), "AOV ids");
+    Buffer values(device, value_bytes(capacity), "AOV values");
+    Buffer ids(device, id_bytes(capacity), "AOV ids");
 
     device::WaveConstants wave = wave_constants(settings, crop);
     wave.first_sample = 0;

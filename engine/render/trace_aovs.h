@@ -1,6 +1,7 @@
 // The AOVs of an image: one ray a pixel to its first hit.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace sahl {
 
 /// Its kernel "describe" turns hits into AOVs.
 Program build_aov_program(Device& device);
+
+/// Device memory while AOVs are traced in batches of `rays`.
+std::size_t aov_queue_bytes(std::uint32_t rays);
 
 /// `aovs` of sample 0 of the crop's pixels, in their order.
 std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,

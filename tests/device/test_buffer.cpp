@@ -1,17 +1,28 @@
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
 #include <numeric>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "engine/device/buffer.h"
 #include "engine/device/program.h"
 #include "tests/device/test_device_support.h"
+#include "tests/support/run_process.h"
 
 namespace sahl::tests {
 namespace {
 
 constexpr std::size_t mebibyte = std::size_t{1} << 20;
+
+/// Whether memory ends at a page that traps, and is aligned to its end (SAHL_GUARD=1).
+bool guarded() {
+    const char* guard = std::getenv("SAHL_GUARD");
+    return guard != nullptr && std::string_view(guard) == "1";
+}
 
 }  // namespace
 
@@ -29,7 +40,7 @@ TEST_CASE("host memory is zeroed, aligned, and accounted for as it is mapped") {
     {
         const HostMemory memory(accountant, bytes, "test");
         CHECK(memory.size() == bytes);
-        CHECK(reinterpret_cast<std::uintptr_t>(memory.data()) % alignment == 0);
+        CHECK(reinterpret_cast<std::uintptr_t>(memory.data()) % (guarded() ? 128 : alignment) == 0);
         CHECK(HostMemory::mapped_bytes(bytes) == mapped);
         CHECK(accountant.current() == mapped);
         auto* first = static_cast<unsigned char*>(memory.data());
@@ -62,6 +73,49 @@ TEST_CASE("host memory that the system refuses is an error with name and size") 
     CHECK(contains(message, "the film"));
     CHECK(contains(message, std::to_string(bytes)));
     CHECK(accountant.current() == 0);
+}
+
+TEST_CASE("an accountant's limit is refused by name, and what is given back may be used again") {
+    MemoryAccountant accountant;
+    accountant.set_limit(10000);
+    HostMemory first(accountant, 8000, "first");
+    MemoryReservation vectors(accountant, 1808, "vectors");
+    CHECK(accountant.current() == 10000);
+    const std::string message = error_of(ExitCode::memory, [&] { MemoryReservation(accountant, 1, "more"); });
+    CHECK(contains(message, "more: cannot allocate 1 bytes"));
+    CHECK(contains(message, "10000 of the 10000"));
+    vectors.give_back(1000);
+    CHECK(accountant.current() == 9000);
+    const MemoryReservation moved = std::move(vectors);
+    CHECK(accountant.current() == 9000);
+    first = HostMemory();
+    CHECK(accountant.current() == 808);
+    accountant.set_limit(100);
+    CHECK(error_of(ExitCode::memory, [&] { MemoryReservation(accountant, 1, "less"); }) != "");
+    CHECK(accountant.current() == 808);
+    CHECK(accountant.peak() == 10000);
+}
+
+TEST_CASE("probe: beyond a buffer's end", "[.probe]") {
+    Device device;
+    const std::string text = "__kernel void set(__global int* out, uint at) { out[at] = 1; }";  // no bounds
+    Program program = Program::from_text(device, text);
+    Buffer out(device, 4096, "out");
+    program.kernel("set").launch({.work_items = 1}, out, std::uint32_t{1023});
+    device.finish();
+    std::cout << "the last element is written" << std::endl;
+    program.kernel("set").launch({.work_items = 1}, out, std::uint32_t{1024});
+    device.finish();
+}
+
+TEST_CASE("with SAHL_GUARD a kernel that writes beyond a buffer's end is stopped there") {
+    ProcessOptions options;
+    options.environment = {{"SAHL_GUARD", "1"}};
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const ProcessResult result = run_process({program, "probe: beyond a buffer's end"}, options);
+    CHECK(contains(result.out, "the last element is written"));
+    CHECK(result.status != 0);
+    CHECK(!contains(result.out, "All tests passed"));
 }
 
 TEST_CASE("buffers keep what is written to them") {

@@ -67,9 +67,9 @@ TEST_CASE("masks are the comparisons, lane by lane, on every code path") {
     fill(a, b);
     // A vector of 16 floats for each index: the first array sets the count.
     const std::size_t count = a.size() / 16;
-    for (const std::string path : {"", "#define SAHL_PLAIN_OPENCL\n", "#undef __AVX512F__\n"}) {
-        CAPTURE(path);
-        KernelRunner runner(path + kKernels);
+    for (const std::string option : {"", "-DSAHL_PLAIN_OPENCL", "-DSAHL_NO_AVX512"}) {
+        CAPTURE(option);
+        KernelRunner runner(kKernels, option);
         Buffer out(runner.device(), 4 * count * sizeof(std::uint32_t), "masks");
         runner.run("masks", count, runner.upload(a), runner.upload(b), out);
         const auto got = KernelRunner::download<std::uint32_t>(out, 4 * count);

@@ -1,0 +1,94 @@
+#include "engine/render/memory_plan.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "engine/device/buffer.h"
+#include "engine/render/host_scene.h"
+#include "engine/render/ray_queues.h"
+#include "engine/render/trace_aovs.h"
+
+namespace sahl {
+namespace {
+
+std::string human(std::uint64_t bytes) {
+    return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+/// The plan for batches of `rays` rays.
+MemoryPlan plan_for(const SceneMemory& scene, const MemoryRequest& request, std::uint32_t rays) {
+    const auto batch = static_cast<std::uint32_t>(std::min<std::uint64_t>(rays, request.samples));
+    const auto aov_batch = static_cast<std::uint32_t>(std::min<std::uint64_t>(rays, request.pixels));
+    MemoryPlan plan;
+    plan.scene = scene;
+    plan.ray_budget = rays;
+    plan.ray_queues = ray_queue_bytes(batch, request.depth, request.light_count);
+    if (request.aovs > 0) plan.aov_queues = aov_queue_bytes(aov_batch);
+    plan.film = HostMemory::mapped_bytes(request.pixels * film_pixel_bytes);
+    plan.image = request.pixels * 3 * sizeof(float);
+    plan.aovs = request.aovs;
+    plan.encoder = request.encoder;
+    return plan;
+}
+
+}  // namespace
+
+MemoryRequest memory_request(const Device& device, const RenderSettings& settings,
+                             std::uint32_t light_count) {
+    const Crop crop =
+        settings.crop.value_or(Crop{0, 0, settings.resolution.width, settings.resolution.height});
+    MemoryRequest request;
+    request.pixels =
+        static_cast<std::uint64_t>(crop.x1 - crop.x0) * static_cast<std::uint64_t>(crop.y1 - crop.y0);
+    const int samples = settings.samples ? settings.samples->count() : settings.spp;
+    request.samples = request.pixels * static_cast<std::uint64_t>(samples);
+    request.depth = settings.depth;
+    request.light_count = light_count;
+    request.ray_budget = std::min(settings.ray_budget, most_rays(device, light_count));
+    return request;
+}
+
+std::uint64_t MemoryPlan::total() const {
+    const std::uint64_t tracing = std::max(ray_queues, image + encoder);
+    return std::max(
+        {scene.loaded + scene.building,             // making the scene ready
+         scene.device() + aovs + aov_queues,        // tracing AOVs
+         scene.device() + aovs + film + tracing});  // tracing, writing files    // tracing, writing files
+}
+
+MemoryPlan plan_memory(const SceneMemory& scene, const MemoryRequest& request, std::uint64_t limit) {
+    std::uint32_t rays = request.ray_budget;
+    MemoryPlan plan = plan_for(scene, request, rays);
+    while (plan.total() > limit && rays > least_ray_budget) {
+        rays = std::max(rays / 2, least_ray_budget);
+        plan = plan_for(scene, request, rays);
+    }
+    if (plan.total() <= limit) return plan;
+    throw Error(
+        ExitCode::memory,
+        fmt::format("the render needs at least {} bytes of memory ({}), where {} ({}) may be used; raise "
+                    "--max-mem to that, or take a smaller image, scene or depth",
+                    plan.total(), human(plan.total()), limit, human(limit)));
+}
+
+void check_room_to_build(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
+    const SceneMemory bound = bound_scene_memory(scene);
+    if (bound.loaded + bound.building > limit) plan_memory(bound, request, limit);
+}
+
+MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
+    check_room_to_build(scene, request, limit);
+    return plan_memory(measure_scene_memory(scene, make_host_scene(scene)), request, limit);
+}
+
+std::uint64_t physical_memory_bytes() {
+    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace sahl
