@@ -25,9 +25,29 @@ public:
     std::size_t peak() const { return peak_; }
 
 private:
+    friend class UncountedMemory;
     std::atomic<std::size_t> current_{0};
     std::atomic<std::size_t> peak_{0};
     std::atomic<std::size_t> limit_{SIZE_MAX};
+};
+
+/// Work on the side, which belongs to what the runtime itself takes: what is allocated while this lives, and
+/// given back before it ends, counts neither against the limit nor for the peak. One thread at a time.
+class UncountedMemory {
+public:
+    explicit UncountedMemory(MemoryAccountant& accountant)
+        : accountant_(accountant), limit_(accountant.limit_.exchange(SIZE_MAX)), peak_(accountant.peak_) {}
+    ~UncountedMemory() {
+        accountant_.limit_ = limit_;
+        accountant_.peak_ = peak_;
+    }
+    UncountedMemory(const UncountedMemory&) = delete;
+    UncountedMemory& operator=(const UncountedMemory&) = delete;
+
+private:
+    MemoryAccountant& accountant_;
+    std::size_t limit_;
+    std::size_t peak_;
 };
 
 /// The accountant's count of memory that something else allocates, such as a std::vector. Move-only.

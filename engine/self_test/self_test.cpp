@@ -45,10 +45,12 @@ std::vector<TestWave> test_waves() {
 /// The scene on the device and what asks the reference about it.
 struct Bench {
     explicit Bench(Device& on, WavefrontKernels& with)
-        : device_scene(make_device_scene(on, scene)),
+        : uncounted(on.memory()),
+          device_scene(make_device_scene(on, scene)),
           queues(on, self_test::samples_of_wave, 1, device_scene.constants.light_count),
           wavefront{on, with, device_scene, queues} {}
 
+    UncountedMemory uncounted;
     Scene scene = every_feature();
     oracle::Oracle reference{scene};
     DeviceScene device_scene;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -143,8 +144,10 @@ struct Process::Impl {
 
     void wait() {
         int status = 0;
-        while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+        rusage usage{};
+        while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
         }
+        result.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
         child = -1;
         result.status = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     }

@@ -26,6 +26,7 @@ struct ProcessOptions {
 struct ProcessResult {
     int status = -1;  ///< exit status, or 128 + n after signal n
     bool timed_out = false;
+    std::size_t peak_bytes = 0;  ///< the most memory that was resident
     std::string out;
     std::string err;
 };
