@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/driver_failure.h"
 #include "cli/standard_output.h"
 #include "engine/device/device_choice.h"
 #include "engine/self_test/self_test.h"
@@ -78,6 +79,7 @@ bool test_one(const DeviceInfo& info, const CommonOptions& common) {
     std::string failure;
     try {
         Device device({std::to_string(info.index), common.device.threads});
+        take_driver_failures();
         report = run_self_test(device);
         if (const KernelTest* failed = report.failed()) failure = "kernel " + failed->kernel + " is wrong";
     } catch (const Error& error) {
