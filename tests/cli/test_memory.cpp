@@ -82,7 +82,7 @@ TEST_CASE("memory: --dry-run finds what would be wrong", "[cli]") {
     };
     CHECK(status({"--max-mem", "10K"}) == 5);
     CHECK(status({"--camera", "none"}) == 2);
-    CHECK(status({"-o", "/proc/none/a.png"}) == 6);
+    CHECK(status({"-o", "/dev/null/a.png"}) == 6);
     CHECK(status({"--device", "none of these"}) == 4);
     CHECK(run_sahl_in(folder.path(), {"render", "none.nff", "--dry-run"}).status == 3);
     for (const char* size : {"", "M", "-1", "1.5G", "5X", "1e9", "99999999999G", "16777216T"})

@@ -19,8 +19,8 @@
 namespace sahl::tests {
 namespace {
 
-/// A camera among facing glass balls and mirrors: both children at every hit, so that the tree of rays
-/// doubles with each generation.
+/// A camera among facing glass balls, within shells of glass that let through and reflect, within a mirror
+/// all around: two children at nearly every hit, so that the tree of rays doubles with each generation.
 Scene hall_of_glass() {
     Scene scene;
     scene.cameras[0] = {{0.05, 0.02, 0}, {1, 0, 0}, {0, 0, 1}, 80};
@@ -34,8 +34,12 @@ Scene hall_of_glass() {
             for (const double z : {-1.0, 0.0, 1.0}) oracle::add_sphere(scene, {{x, y, z}, 0.49}, glass);
         }
     }
-    Material mirror = glass;  // lets half of the light through: two children here as well
-    for (const float z : {-3.0F, 3.0F}) oracle::add_square(scene, z, 8, mirror);
+    glass.ior = 1;  // nothing is reflected totally
+    for (const double radius : {3.0, 4.0, 5.0, 6.0, 7.0})
+        oracle::add_sphere(scene, {{0, 0, 0}, radius}, glass);
+    Material mirror = oracle::matte(glm::vec3(0.1F));
+    mirror.reflection = glm::vec3(0.9F);
+    oracle::add_sphere(scene, {{0, 0, 0}, 9}, mirror);
     return scene;
 }
 
