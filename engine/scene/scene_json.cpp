@@ -111,7 +111,7 @@ FileScene read_json_scene(const JsonDocument& document, const fs::path& path, Sc
     set(parameters);
 
     const JsonReader reader(document, &parameters);
-    JsonSceneState state{reader, path, files};
+    JsonSceneState state(reader, path, files);
     Scene& scene = state.scene;
     scene.cameras.clear();
     if (const JsonValue* value = file.find("film")) read_film(reader, *value, scene.resolution);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -39,18 +40,23 @@ struct FileScene {
 };
 
 struct JsonSceneState {
+    // A constructor, and no braces behind the members: where an aggregate's initialization runs out of
+    // memory GCC 12 destroys the members of a member twice.
+    JsonSceneState(const JsonReader& with, std::filesystem::path from, SceneFiles& among)
+        : reader(with), path(std::move(from)), files(among) {}
+
     const JsonReader& reader;
     std::filesystem::path path;  ///< of this file
     SceneFiles& files;
 
-    Scene scene{};  ///< its primitives, instances and groups are below until the end
-    Placed world{};
-    std::deque<Placed> groups{};  ///< this file's own, then those of its includes
-    std::vector<std::string> group_names{};
-    std::map<std::string_view, std::uint32_t> own_groups{};
-    std::map<std::string_view, std::uint32_t> materials{};  ///< by name
-    std::optional<std::uint32_t> default_material{};
-    std::optional<glm::vec3> ambient{};
+    Scene scene;  ///< its primitives, instances and groups are below until the end
+    Placed world;
+    std::deque<Placed> groups;  ///< this file's own, then those of its includes
+    std::vector<std::string> group_names;
+    std::map<std::string_view, std::uint32_t> own_groups;
+    std::map<std::string_view, std::uint32_t> materials;  ///< by name
+    std::optional<std::uint32_t> default_material;
+    std::optional<glm::vec3> ambient;
 };
 
 /// What an object has from the group object around it.
