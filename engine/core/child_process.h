@@ -33,8 +33,8 @@ std::string run_in_child(const std::function<void(PipeEnd)>& work,
                          const std::function<void(PipeEnd)>& receive);
 
 /// From now on this process may take `bytes` more of memory, beyond which allocations fail, and
-/// `seconds` more of processor time, beyond which it dies (and run_in_child says so). A later call
-/// replaces an earlier one's limits.
+/// `seconds` more of processor time, or a few times that by the clock, beyond which it dies (and
+/// run_in_child says so). A later call replaces an earlier one's limits.
 void limit_process(std::size_t bytes, std::size_t seconds);
 
 }  // namespace sahl
