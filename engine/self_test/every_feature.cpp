@@ -91,7 +91,8 @@ void add_groups(Scene& scene, const Textures& textures) {
     Material column = painted({0.8F, 0.8F, 0.5F}, textures.cells);
     column.reflection = vec3(0.2F);
     oracle::add_cone(scene, {{0, 0, 0}, {0, 0, 1}, 0.25, 0.25, true}, column);
-    oracle::add_box(scene, {{-0.3, -0.3, 1.02}, {0.3, 0.3, 1.15}}, painted({0.6F, 0.4F, 0.3F}, textures.cells));
+    oracle::add_box(scene, {{-0.3, -0.3, 1.02}, {0.3, 0.3, 1.15}},
+                    painted({0.6F, 0.4F, 0.3F}, textures.cells));
     Material one_sided = painted({0.3F, 0.5F, 0.8F}, textures.cells);
     one_sided.specular_model = SpecularModel::blinn;
     one_sided.two_sided = false;
