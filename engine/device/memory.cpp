@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
@@ -88,6 +89,11 @@ void* map_aligned(std::size_t bytes, std::string_view name) {
 }
 
 }  // namespace
+
+std::size_t physical_memory_bytes() {
+    return static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::size_t>(::sysconf(_SC_PAGE_SIZE));
+}
 
 void MemoryAccountant::add(std::size_t bytes, std::string_view name) {
     if (is_to_fail()) refuse(name, bytes, "SAHL_FAIL_ALLOCATION says so");

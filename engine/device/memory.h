@@ -8,6 +8,9 @@
 
 namespace sahl {
 
+/// What this machine has.
+std::size_t physical_memory_bytes();
+
 /// Counts the bytes that the engine holds: device buffers, scene, trees, film, encoder. Thread-safe.
 class MemoryAccountant {
 public:

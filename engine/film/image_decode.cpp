@@ -1,7 +1,6 @@
 #include "engine/film/image_decode.h"
 
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -10,6 +9,7 @@
 #include <new>
 
 #include "engine/core/error.h"
+#include "engine/device/memory.h"
 
 namespace sahl {
 namespace {
@@ -19,11 +19,6 @@ namespace fs = std::filesystem;
 /// Values that one byte of a file may stand for. The tightest of the usual compressions, deflate over
 /// 8x8 blocks, comes to 66,000; a few hundred bytes that claim to be gigabytes are an attack.
 constexpr std::uintmax_t max_values_per_byte = 100'000;
-
-std::size_t physical_memory() {
-    return static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::size_t>(::sysconf(_SC_PAGE_SIZE));
-}
 
 /// Size and layout are such as read_image takes.
 void check_header(const fs::path& path, const OIIO::ImageSpec& spec) {
@@ -70,7 +65,7 @@ Image decode(const fs::path& path, const std::function<void(std::size_t)>& befor
     const int stored = spec.nchannels < 3 ? 1 : 3;
     const std::size_t values =
         3 * static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-    if (values * sizeof(float) > physical_memory()) throw std::bad_alloc();
+    if (values * sizeof(float) > physical_memory_bytes()) throw std::bad_alloc();
     before_pixels(values);
     Image image{
         .width = spec.width, .height = spec.height, .channels = 3, .pixels = std::vector<float>(values)};

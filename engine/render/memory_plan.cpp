@@ -1,7 +1,5 @@
 #include "engine/render/memory_plan.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <string>
 
@@ -84,11 +82,6 @@ void check_room_to_build(const Scene& scene, const MemoryRequest& request, std::
 MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
     check_room_to_build(scene, request, limit);
     return plan_memory(measure_scene_memory(scene, make_host_scene(scene)), request, limit);
-}
-
-std::uint64_t physical_memory_bytes() {
-    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-           static_cast<std::uint64_t>(::sysconf(_SC_PAGE_SIZE));
 }
 
 }  // namespace sahl

@@ -58,7 +58,4 @@ void check_room_to_build(const Scene& scene, const MemoryRequest& request, std::
 /// Errors as check_room_to_build, plan_memory and make_host_scene.
 MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit);
 
-/// What this machine has: the limit where none is given.
-std::uint64_t physical_memory_bytes();
-
 }  // namespace sahl
