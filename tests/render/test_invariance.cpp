@@ -22,10 +22,10 @@ struct Subject {
     RenderSettings settings;
 };
 
-Subject subject(std::string name, Scene scene, int spp) {
+Subject subject(std::string name, Scene scene) {
     Subject result{std::move(name), std::move(scene), square_settings(full_tests() ? 64 : 24, 5)};
     result.settings.resolution.height += 5;
-    result.settings.spp = spp;
+    result.settings.spp = 16;
     result.settings.seed = 11;
     return result;
 }
@@ -35,16 +35,16 @@ Subject subject(std::string name, Scene scene, int spp) {
 std::vector<Subject> subjects() {
     const std::filesystem::path scenes = std::filesystem::path(std::getenv("SAHL_SOURCE_DIR")) / "scenes";
     std::vector<Subject> all;
-    all.push_back(subject("every feature", every_feature(), 16));
+    all.push_back(subject("every feature", every_feature()));
     for (const char* name : {"glass.json", "shadows.json", "transforms.json"})
-        all.push_back(subject(name, load_scene(scenes / name), 16));
+        all.push_back(subject(name, load_scene(scenes / name)));
     if (const auto data = test_data()) {
         std::vector<std::string> names{"balls-s2", "gears-s1", "mount-s3"};
         if (full_tests())
             names = {"balls-s1", "balls-s2", "balls-s3",    "gears-s1", "jacks-s2", "lattice-s2",
                      "mount-s3", "rings-s1", "sombrero-s2", "tetra-s2", "tree-s2",  "shells-s2"};
         for (const std::string& name : names)
-            all.push_back(subject(name, load_scene(*data / "spd/nff/small" / (name + ".nff")), 4));
+            all.push_back(subject(name, load_scene(*data / "spd/nff/small" / (name + ".nff"))));
     }
     return all;
 }
