@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -45,5 +46,14 @@ std::vector<nlohmann::json> json_lines(const std::string& text) {
 }
 
 void write_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string content_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace sahl::tests

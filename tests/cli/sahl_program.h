@@ -29,4 +29,9 @@ std::vector<nlohmann::json> json_lines(const std::string& text);
 
 void write_file(const std::filesystem::path& path, const std::string& text);
 
+/// All bytes of a file; none if there is no such file.
+std::string content_of(const std::filesystem::path& path);
+
+bool contains(const std::string& text, const std::string& part);
+
 }  // namespace sahl::tests

@@ -7,10 +7,6 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 /// 8-bit images of 10x10 pixels: grey 100, the first `count` pixels `steps` brighter in green.
 void write_grey(const std::filesystem::path& path, int count, int steps) {
     Image image{10, 10, 3, std::vector<float>(300, 100 / 255.0F)};

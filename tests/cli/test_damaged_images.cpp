@@ -19,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 /// Of PNG chunks.
 std::uint32_t crc32(const std::string& bytes) {
     std::uint32_t crc = ~0U;

@@ -25,15 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string content_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// `sahl render` of a small scene into a folder of its own.
 struct Render {
     std::vector<std::string> arguments{"render", scene_file("cli_mirrors.nff"), "--pixel-type", "float"};

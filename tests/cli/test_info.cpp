@@ -7,10 +7,6 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 /// No OpenCL driver is there.
 ProcessResult info(const TemporaryFolder& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "info");

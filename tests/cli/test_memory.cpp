@@ -13,10 +13,6 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 nlohmann::json plan_event(const ProcessResult& result) {
     INFO(result.out << result.err);
     REQUIRE(result.status == 0);

@@ -11,10 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 ProcessResult render_in(const fs::path& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"render", scene_file("cli_mirrors.nff")});
     return run_sahl_in(folder, arguments);

@@ -8,10 +8,6 @@
 namespace sahl::tests {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 /// An OpenCL loader without drivers.
 ProcessOptions without_opencl(const std::filesystem::path& empty_folder) {
     ProcessOptions options;

@@ -14,10 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 std::string mirrors() { return scene_file("cli_mirrors.nff"); }
 
 /// Runs `sahl render` in `folder`; it has to succeed.
