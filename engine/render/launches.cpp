@@ -23,9 +23,9 @@ Program build_wavefront_program(Device& device) {
 
 WavefrontKernels::WavefrontKernels(Program& program)
     : generate(program.kernel("generate")),
-      intersect(program.kernel("intersect")),
+      intersect(program.kernel("intersect_scalar")),
       shade(program.kernel("shade")),
-      shadow(program.kernel("shadow")),
+      shadow(program.kernel("shadow_scalar")),
       count_children(program.kernel("count_children")),
       sum_children(program.kernel("sum_children")),
       compact(program.kernel("compact")) {}

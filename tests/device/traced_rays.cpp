@@ -190,7 +190,7 @@ std::vector<TestHit> RayTracer::download(Batch& batch) {
 
 std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
-    runner_.run("intersect", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+    runner_.run("intersect_scalar", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
                 scene.constants, batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.count);
     return download(batch);
 }
@@ -254,7 +254,7 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
                 scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
                 batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes, batch.count,
                 batch.count);
-    runner_.run("shadow", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+    runner_.run("shadow_scalar", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
                 scene.primitives, scene.materials, scene.lights, scene.constants, batch.hit_ids, surfaces,
                 brought, outcomes, light, batch.count);
 
