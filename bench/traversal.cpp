@@ -1,0 +1,116 @@
+// Rays through the same scenes by Sahl and by Embree: `bench/run traversal`.
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "bench/embree_scene.h"
+#include "bench/machine.h"
+#include "bench/traversal_report.h"
+#include "engine/core/error.h"
+
+namespace sahl::bench {
+namespace {
+
+struct Options {
+    std::vector<std::string> scenes, rays, kernels;
+    int size = 1024;
+    int repetitions = 7;
+    DeviceOptions device;
+    std::string json;
+};
+
+/// Whether an option that narrows the benchmark lets `name` through.
+bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
+    return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+/// All sets of rays that start with the camera's, made of what Embree's robust mode hits.
+std::vector<RaySet> make_ray_sets(const BenchScene& scene, RTCScene embree, MemoryAccountant& accountant,
+                                  const Options& options) {
+    const RaySet primary = primary_rays(scene.scene.cameras[0], options.size);
+    EmbreeRays layout(accountant, primary, 1);
+    layout.trace(embree, embree_apis().front());
+    const std::vector<SurfacePoint> points = surface_points(scene.scene, primary, layout.hits());
+    std::vector<RaySet> sets{primary, shadow_rays(points, scene.scene.lights[0]), diffuse_rays(points),
+                             mirror_rays(points), refracted_rays(points)};
+    std::erase_if(sets, [&](const RaySet& set) { return !is_wanted(options.rays, set.kind); });
+    return sets;
+}
+
+void measure_mesh(const SceneMaker& maker, SahlTracer& sahl, const std::vector<SahlKernel>& kernels,
+                  RTCDevice embree, const Options& options, std::vector<TraversalCell>& cells) {
+    const BenchScene scene = maker.make();
+    sahl.set_scene(scene.scene);
+    const EmbreeGeometry triangles = embree_triangles(embree, scene.scene);
+    const EmbreeScene fast =
+        embree_scene(embree, triangles.get(), RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_NONE);
+    const EmbreeScene robust =
+        embree_scene(embree, triangles.get(), RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST);
+    for (const RaySet& rays : make_ray_sets(scene, robust.get(), sahl.device().memory(), options)) {
+        cells.push_back(measure_cell(scene, rays, sahl, kernels, {"triangles", fast.get(), robust.get()},
+                                     options.repetitions));
+        print_cell(cells.back());
+    }
+}
+
+void run(const Options& options) {
+    if (options.size % 8 != 0) throw Error(ExitCode::usage, "--size must be a multiple of 8");
+    SahlTracer sahl(options.device);
+    std::vector<SahlKernel> kernels(sahl_kernels().begin(), sahl_kernels().end());
+    std::erase_if(kernels,
+                  [&](const SahlKernel& kernel) { return !is_wanted(options.kernels, kernel.name); });
+    if (kernels.empty()) throw Error(ExitCode::usage, "--kernel names no kernel");
+    const EmbreeDevice embree = open_embree();
+
+    std::vector<TraversalCell> cells;
+    print_head();
+    for (const SceneMaker& maker : mesh_makers()) {
+        if (is_wanted(options.scenes, maker.name))
+            measure_mesh(maker, sahl, kernels, embree.get(), options, cells);
+    }
+    print_means(cells);
+
+    if (options.json.empty()) return;
+    nlohmann::ordered_json report{
+        {"machine", machine_facts()},         {"size", options.size},
+        {"repetitions", options.repetitions}, {"build_options", options.device.build_options},
+        {"means", means_json(cells)},         {"cells", nlohmann::ordered_json::array()}};
+    for (const TraversalCell& cell : cells) report["cells"].push_back(cell_json(cell));
+    write_report(report, options.json);
+}
+
+}  // namespace
+}  // namespace sahl::bench
+
+int main(int argc, char** argv) {
+    CLI::App app("Rays through the same scenes by Sahl and by Embree");
+    sahl::bench::Options options;
+    app.add_option("--json", options.json, "Write all figures to this file");
+    app.add_option("--scene", options.scenes, "These alone, as in organic,terrain")->delimiter(',');
+    app.add_option("--rays", options.rays, "These alone: primary, shadow, diffuse, mirror, refracted")
+        ->delimiter(',');
+    app.add_option("--kernel", options.kernels, "These of Sahl's alone")->delimiter(',');
+    app.add_option("--size", options.size, "Camera rays are size x size")
+        ->check(CLI::Range(8, 8192))
+        ->capture_default_str();
+    app.add_option("--repetitions", options.repetitions, "Measurements that medians are of")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    app.add_option("--device", options.device.selector, "OpenCL device, as for sahl");
+    app.add_option("--build-options", options.device.build_options,
+                   "More options for the OpenCL compiler, as -DSAHL_NO_AVX512 or -DSAHL_PLAIN_OPENCL");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        sahl::bench::run(options);
+    } catch (const sahl::Error& error) {
+        fmt::print(stderr, "sahl_bench_traversal: {}\n", error.what());
+        return static_cast<int>(error.code());
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "sahl_bench_traversal: {}\n", error.what());
+        return static_cast<int>(sahl::ExitCode::internal);
+    }
+}
