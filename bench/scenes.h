@@ -31,4 +31,8 @@ struct SceneMaker {
 /// The three meshes.
 std::span<const SceneMaker> mesh_makers();
 
+/// Fields of 10,000 and of a million spheres, of open cones and cylinders, and of polygons of 5 to 8 corners,
+/// every other one concave: in a cube of edge 10 that is divided into as many cells, one within each.
+std::span<const SceneMaker> field_makers();
+
 }  // namespace sahl::bench

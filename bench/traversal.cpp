@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/embree_scene.h"
+#include "bench/embree_shapes.h"
 #include "bench/machine.h"
 #include "bench/traversal_report.h"
 #include "engine/core/error.h"
@@ -28,7 +29,7 @@ bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) 
     return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-/// All sets of rays that start with the camera's, made of what Embree's robust mode hits.
+/// All sets of rays that start with the camera's, made of what `embree` hits.
 std::vector<RaySet> make_ray_sets(const BenchScene& scene, RTCScene embree, MemoryAccountant& accountant,
                                   const Options& options) {
     const RaySet primary = primary_rays(scene.scene.cameras[0], options.size);
@@ -57,6 +58,31 @@ void measure_mesh(const SceneMaker& maker, SahlTracer& sahl, const std::vector<S
     }
 }
 
+/// Spheres, cones or polygons: camera and diffuse rays alone.
+void measure_field(const SceneMaker& maker, SahlTracer& sahl, const std::vector<SahlKernel>& kernels,
+                   RTCDevice embree, const Options& options, std::vector<TraversalCell>& cells) {
+    const BenchScene field = maker.make();
+    sahl.set_scene(field.scene);
+    const OwnedUserShapes shapes = user_shapes(field.scene);
+    const EmbreeGeometry user = embree_user_geometry(embree, *shapes);
+    const EmbreeScene user_scene =
+        embree_scene(embree, user.get(), RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_NONE);
+    EmbreeScene sphere_scene;
+    if (!field.scene.spheres.empty()) {
+        const EmbreeGeometry spheres = embree_spheres(embree, field.scene);
+        sphere_scene = embree_scene(embree, spheres.get(), RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_NONE);
+    }
+    for (const RaySet& rays : make_ray_sets(field, user_scene.get(), sahl.device().memory(), options)) {
+        if (rays.kind != "primary" && rays.kind != "diffuse") continue;
+        const auto measure = [&](const EmbreeSide& side) {
+            cells.push_back(measure_cell(field, rays, sahl, kernels, side, options.repetitions));
+            print_cell(cells.back());
+        };
+        if (sphere_scene) measure({"spheres", sphere_scene.get(), nullptr});
+        measure({"user geometry", user_scene.get(), nullptr});
+    }
+}
+
 void run(const Options& options) {
     if (options.size % 8 != 0) throw Error(ExitCode::usage, "--size must be a multiple of 8");
     SahlTracer sahl(options.device);
@@ -72,6 +98,10 @@ void run(const Options& options) {
         if (is_wanted(options.scenes, maker.name))
             measure_mesh(maker, sahl, kernels, embree.get(), options, cells);
     }
+    for (const SceneMaker& maker : field_makers()) {
+        if (is_wanted(options.scenes, maker.name))
+            measure_field(maker, sahl, kernels, embree.get(), options, cells);
+    }
     print_means(cells);
 
     if (options.json.empty()) return;
@@ -83,14 +113,10 @@ void run(const Options& options) {
     write_report(report, options.json);
 }
 
-}  // namespace
-}  // namespace sahl::bench
-
-int main(int argc, char** argv) {
-    CLI::App app("Rays through the same scenes by Sahl and by Embree");
-    sahl::bench::Options options;
+void add_options(CLI::App& app, Options& options) {
     app.add_option("--json", options.json, "Write all figures to this file");
-    app.add_option("--scene", options.scenes, "These alone, as in organic,terrain")->delimiter(',');
+    app.add_option("--scene", options.scenes, "These alone, as in organic,terrain,spheres-10k")
+        ->delimiter(',');
     app.add_option("--rays", options.rays, "These alone: primary, shadow, diffuse, mirror, refracted")
         ->delimiter(',');
     app.add_option("--kernel", options.kernels, "These of Sahl's alone")->delimiter(',');
@@ -103,8 +129,17 @@ int main(int argc, char** argv) {
     app.add_option("--device", options.device.selector, "OpenCL device, as for sahl");
     app.add_option("--build-options", options.device.build_options,
                    "More options for the OpenCL compiler, as -DSAHL_NO_AVX512 or -DSAHL_PLAIN_OPENCL");
-    CLI11_PARSE(app, argc, argv);
+}
+
+}  // namespace
+}  // namespace sahl::bench
+
+int main(int argc, char** argv) {
     try {
+        CLI::App app("Rays through the same scenes by Sahl and by Embree");
+        sahl::bench::Options options;
+        sahl::bench::add_options(app, options);
+        CLI11_PARSE(app, argc, argv);
         sahl::bench::run(options);
     } catch (const sahl::Error& error) {
         fmt::print(stderr, "sahl_bench_traversal: {}\n", error.what());

@@ -57,7 +57,7 @@ nlohmann::ordered_json range_json(const Spread& spread) { return {spread.min, sp
 void print_head() {
     fmt::print(
         "Mrays/s, medians; the ratio's spread over the repetitions; rays that differ from Embree's\n\n"
-        "{:<14}{:<10}{:>9}  {:>7} {:<8}{:>7} {:<26}{:>6} {:<13}{:>7}{:>8}\n",
+        "{:<13}{:<10}{:>8}  {:>7} {:<7} {:>7} {:<34}{:>5} {:<12}{:>7}{:>8}\n",
         "scene", "rays", "count", "Sahl", "kernel", "Embree", "by", "ratio", "spread", "robust", "differ");
     std::fflush(stdout);
 }
@@ -65,8 +65,9 @@ void print_head() {
 void print_cell(const TraversalCell& cell) {
     const Runs &sahl = best_of(cell.sahl), &embree = best_of(cell.embree);
     const Spread spread = ratio_spread(cell, cell.embree);
-    fmt::print("{:<14}{:<10}{:>9}  {:>7.2f} {:<8}{:>7.2f} {:<26}{:>6.2f} {:<13}{:>7}{:>8}\n", cell.scene,
-               cell.rays, cell.count, mrays(cell, sahl), sahl.name, mrays(cell, embree), embree.name,
+    fmt::print("{:<13}{:<10}{:>8}  {:>7.2f} {:<7} {:>7.2f} {:<34}{:>5.2f} {:<12}{:>7}{:>8}\n", cell.scene,
+               cell.rays, cell.count, mrays(cell, sahl), sahl.name, mrays(cell, embree),
+               is_mesh(cell) ? embree.name : fmt::format("{}, {}", embree.name, cell.geometry),
                ratio(cell, cell.embree), fmt::format("{:.2f}..{:.2f}", spread.min, spread.max),
                is_mesh(cell) ? fmt::format("{:.2f}", ratio(cell, cell.robust)) : "", cell.differences.rays());
     std::fflush(stdout);
