@@ -109,6 +109,8 @@ Soup axis_parallel_soup(Random& random, int count) {
         for (const vec3& p :
              {corner, corner + u, corner + u + v, corner + v, corner + u * 0.5F, corner + (u + v) * 0.5F})
             target.points.push_back({dvec3(p), normal});
+        target.flat = true;
+        for (std::size_t tip = 0; tip < 4; ++tip) target.tips.push_back(target.points[tip].position);
         const auto add = [&](std::uint32_t id) {
             target.id = id;
             soup.targets.push_back(target);

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/oracle/build_scene.h"
+#include "tests/device/ray_sets.h"
 #include "tests/device/soups.h"
 #include "tests/device/traced_rays.h"
 
@@ -30,7 +31,6 @@ Scene sheets(int count, const std::vector<vec3>& transmissions) {
 }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 }  // namespace
 
@@ -39,21 +39,7 @@ TEST_CASE("rays that are not finite or lead nowhere meet nothing, and none takes
     Random random(12);
     const Soup soup = random_soup(random, 60, 1, 0);
     const DeviceScene scene = tracer.upload(soup.scene);
-    std::vector<TestRay> rays;
-    for (const float bad : {kNan, kInfinity, -kInfinity}) {
-        for (int k = 0; k < 3; ++k) {
-            vec3 v(0.25F, -0.5F, 1);
-            v[k] = bad;
-            rays.push_back({v, {0, 0, 1}});
-            rays.push_back({{0, 0, -9}, v});
-            rays.push_back({v, v});
-            v[(k + 1) % 3] = -bad;
-            rays.push_back({v, {0, 0, 1}});
-            rays.push_back({{0, 0, -9}, v});
-        }
-    }
-    rays.push_back({{0, 0, -9}, {0, 0, 0}});
-    rays.push_back({{0, 0, -9}, {0, -0.0F, 0}});
+    std::vector<TestRay> rays = bad_rays();
     for (const TestHit& hit : tracer.intersect(scene, rays)) CHECK_FALSE(hit.hit());
     for (const Occlusion met : tracer.occlusion(scene, rays, kInfinity)) CHECK((met == Occlusion::nothing));
 

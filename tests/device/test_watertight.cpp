@@ -52,8 +52,8 @@ TEST_CASE("no ray leaks through a closed mesh") {
     meshes.emplace_back("cube of quadrangles far away", quadrangle_cube(random, 5, 100, far));
     meshes.emplace_back("cube of zigzags", zigzag_cube(random, 1, origin));
     meshes.emplace_back("cube of zigzags far away", zigzag_cube(random, 100, far));
-    // 1 million rays, or 24 million, in all.
-    const std::size_t rays = (full_tests() ? 24'000'000U : 1'000'000U) / meshes.size();
+    // 1 million rays, or 100 million, in all.
+    const std::size_t rays = (full_tests() ? 100'000'000U : 1'000'000U) / meshes.size();
     for (const auto& [name, mesh] : meshes) {
         CAPTURE(name);
         CHECK(leaks(tracer, random, mesh, rays) == 0);

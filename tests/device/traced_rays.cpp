@@ -1,89 +1,38 @@
 #include "tests/device/traced_rays.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <catch2/catch.hpp>
+#include <iomanip>
+#include <span>
+#include <sstream>
+
+#include "tests/device/ray_kernels.h"
 
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kKernels = R"(
-#include "kernels/intersect.cl"
-#include "kernels/shade.cl"
-#include "kernels/shadow.cl"
+/// The ends of the kernels' names.
+constexpr std::array traversals{"scalar", "packet", "stream"};
 
-kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices,
-                        const global DeviceInstance* instances, const global uint* children,
-                        const global uint* child_instances, const uint child_count, const float extent,
-                        const global float* rays, const global uint* ray_ids,
-                        global float* hits, global uint* hit_ids, const uint count) {
-    const Bvh bvh = {0, leaves, polygon_vertices, instances, extent};
-    TEST_FOR_EACH(i, count) {
-        Ray ray = load_ray(rays, ray_ids, count, i);
-        HitState state = hit_state(0.0f, INFINITY);
-        TracedRay here = traced_ray(ray.origin, ray.direction, &ray, SAHL_WORLD, extent);
-        for (uint k = 0; k < child_count; ++k) {
-            if (child_instances[k] != state.inside_of) {
-                state.inside_of = child_instances[k];
-                here = traced_in_instance(&bvh, &ray, state.inside_of - 1u);
-            }
-            intersect_leaf(&bvh, children[k], &here.ray, &here.shear, &here.boxes, &state, false);
-        }
-        store_hit(hits, hit_ids, count, i, &state);
+/// What is behind the rays of a batch: more than a packet.
+constexpr std::uint32_t guard_rays = 200;
+constexpr std::uint32_t fill_bits = 0xa5a5a5a5;
+
+void fill(Buffer& buffer) {
+    const auto bits = buffer.map<std::uint32_t>(MapMode::write, buffer.bytes() / sizeof(std::uint32_t));
+    std::fill(bits.begin(), bits.end(), fill_bits);
+}
+
+/// Whether each of a buffer's arrays of `capacity` still has what fill() wrote behind the first `count`.
+bool is_filled_behind(Buffer& buffer, std::size_t count, std::size_t capacity) {
+    const auto bits = buffer.map<std::uint32_t>(MapMode::read, buffer.bytes() / sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+        if (i % capacity >= count && bits[i] != fill_bits) return false;
     }
+    return true;
 }
-
-kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                      const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
-                      global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
-    TEST_FOR_EACH(i, count) {
-        Ray ray = load_ray(rays, ray_ids, count, i);
-        out[i] = any_hit(&bvh, &ray, t_max);
-    }
-}
-
-kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
-                 const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
-                 const uint longest, global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
-    TEST_FOR_EACH(i, count) {
-        Ray ray = load_ray(rays, ray_ids, count, i);
-        global uint* crossings = out + (size_t)i * (1u + 3u * longest);
-        uint met = 0;
-        HitState hit = closest_hit(&bvh, &ray, hit_state(0.0f, t_max));
-        while (hit.primitive != SAHL_NO_PRIMITIVE && met < longest) {
-            crossings[1u + met] = hit.primitive;
-            crossings[1u + longest + met] = hit.instance;
-            crossings[1u + 2u * longest + met] = as_uint(hit.t);
-            ++met;
-            hit = closest_hit(&bvh, &ray, hit_state_behind(hit, t_max));
-        }
-        crossings[0] = met;
-    }
-}
-
-static inline void store_parts(global float* to, real3 v) {
-    float3 rounded = round3(v);
-    vstore3(rounded, 0, to);
-    vstore3(round3(v - convert_real3(rounded)), 1, to);
-}
-
-kernel void surfaces(const global DevicePrimitive* primitives, const global float* shape_data,
-                     const global DeviceInstance* instances, const global float* rays, const global float* hits,
-                     const global uint* hit_ids, global float* out, const uint count) {
-    const Shapes shapes = {primitives, shape_data, instances};
-    TEST_FOR_EACH(i, count) {
-        if (hit_ids[i] == SAHL_NO_PRIMITIVE) { continue; }
-        float3 hit = load_soa3(hits, SAHL_HIT_T, count, i);
-        real3 o = convert_real3(load_soa3(rays, SAHL_RAY_ORIGIN, count, i));
-        real3 d = convert_real3(load_soa3(rays, SAHL_RAY_DIRECTION, count, i));
-        Surface s = surface_at(&shapes, hit_ids[count + i], hit_ids[i], o, d, hit.x, hit.y, hit.z);
-        store_parts(out + 19 * i, s.position);
-        store_parts(out + 19 * i + 6, s.ng);
-        store_parts(out + 19 * i + 12, s.ns);
-        out[19 * i + 18] = s.offset;
-    }
-}
-)";
 
 /// Leaves of primitives with the instances they are in.
 struct Leaves {
@@ -138,25 +87,53 @@ bool operator==(const TestHit& a, const TestHit& b) {
            same(a.v, b.v);
 }
 
-RayTracer::RayTracer(const std::string& options) : runner_(kKernels, options) {}
+std::string differences(const std::vector<TestRay>& rays, const std::vector<TestHit>& a,
+                        const std::vector<TestHit>& b) {
+    constexpr int shown = 4;
+    std::ostringstream text;
+    text << std::setprecision(9);
+    const auto put = [&](const TestHit& hit) {
+        text << hit.instance << '/' << hit.primitive << " at " << hit.t << " (" << hit.u << ", " << hit.v
+             << ')';
+    };
+    int count = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (a[i] == b[i] || ++count > shown) continue;
+        const TestRay& ray = rays[i];
+        text << "; ray " << i << " from " << ray.origin.x << ' ' << ray.origin.y << ' ' << ray.origin.z
+             << " along " << ray.direction.x << ' ' << ray.direction.y << ' ' << ray.direction.z
+             << " starting on " << ray.exclude_instance << '/' << ray.exclude << ": ";
+        put(a[i]);
+        text << ", ";
+        put(b[i]);
+    }
+    return count == 0 ? "" : std::to_string(count) + " of " + std::to_string(rays.size()) + text.str();
+}
 
-RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays) {
-    const std::size_t count = rays.size();
-    Batch batch{Buffer(device(), SAHL_RAY_FLOATS * count * sizeof(float), "rays"),
-                Buffer(device(), SAHL_RAY_UINTS * count * sizeof(std::uint32_t), "ray ids"),
-                Buffer(device(), SAHL_HIT_FLOATS * count * sizeof(float), "hits"),
-                Buffer(device(), SAHL_HIT_UINTS * count * sizeof(std::uint32_t), "hit ids"),
-                static_cast<std::uint32_t>(count)};
-    const auto floats = batch.rays.map<float>(MapMode::write, SAHL_RAY_FLOATS * count);
-    const auto ids = batch.ids.map<std::uint32_t>(MapMode::write, SAHL_RAY_UINTS * count);
-    for (std::size_t i = 0; i < count; ++i) {
+RayTracer::RayTracer() : device_(std::make_shared<Device>()) {
+    for (const std::string& options : simd_versions)
+        versions_.push_back({options, KernelRunner(ray_kernels, options, device_)});
+}
+
+RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, std::uint32_t guard) {
+    const std::size_t count = rays.size(), capacity = count + guard;
+    Batch batch{Buffer(device(), SAHL_RAY_FLOATS * capacity * sizeof(float), "rays"),
+                Buffer(device(), SAHL_RAY_UINTS * capacity * sizeof(std::uint32_t), "ray ids"),
+                Buffer(device(), SAHL_HIT_FLOATS * capacity * sizeof(float), "hits"),
+                Buffer(device(), SAHL_HIT_UINTS * capacity * sizeof(std::uint32_t), "hit ids"),
+                static_cast<std::uint32_t>(count),
+                static_cast<std::uint32_t>(capacity)};
+    const auto floats = batch.rays.map<float>(MapMode::write, SAHL_RAY_FLOATS * capacity);
+    const auto ids = batch.ids.map<std::uint32_t>(MapMode::write, SAHL_RAY_UINTS * capacity);
+    for (std::size_t i = 0; i < capacity; ++i) {
+        const TestRay ray = i < count ? rays[i] : count > 0 ? rays[0] : TestRay{};
         for (int k = 0; k < 3; ++k) {
-            floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count + i] = rays[i].origin[k];
-            floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count + i] = rays[i].direction[k];
+            floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * capacity + i] = ray.origin[k];
+            floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * capacity + i] = ray.direction[k];
         }
-        for (std::size_t k = 0; k < 3; ++k) floats[(SAHL_RAY_WEIGHT + k) * count + i] = 1;
-        ids[SAHL_RAY_EXCLUDE * count + i] = rays[i].exclude;
-        ids[SAHL_RAY_INSTANCE * count + i] = rays[i].exclude_instance;
+        for (std::size_t k = 0; k < 3; ++k) floats[(SAHL_RAY_WEIGHT + k) * capacity + i] = 1;
+        ids[SAHL_RAY_EXCLUDE * capacity + i] = ray.exclude;
+        ids[SAHL_RAY_INSTANCE * capacity + i] = ray.exclude_instance;
     }
     return batch;
 }
@@ -177,39 +154,122 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, const std::
 }
 
 std::vector<TestHit> RayTracer::download(Batch& batch) {
-    const std::size_t count = batch.count;
-    const auto floats = batch.hits.map<float>(MapMode::read, SAHL_HIT_FLOATS * count);
-    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::read, SAHL_HIT_UINTS * count);
+    const std::size_t n = batch.capacity;
+    const auto floats = batch.hits.map<float>(MapMode::read, SAHL_HIT_FLOATS * n);
+    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::read, SAHL_HIT_UINTS * n);
     std::vector<TestHit> hits;
-    hits.reserve(count);
-    for (std::size_t i = 0; i < count; ++i)
-        hits.push_back({floats[i], floats[count + i], floats[2 * count + i],
-                        hit_ids[SAHL_HIT_PRIMITIVE * count + i], hit_ids[SAHL_HIT_INSTANCE * count + i]});
+    hits.reserve(batch.count);
+    for (std::size_t i = 0; i < batch.count; ++i)
+        hits.push_back({floats[i], floats[n + i], floats[2 * n + i], hit_ids[SAHL_HIT_PRIMITIVE * n + i],
+                        hit_ids[SAHL_HIT_INSTANCE * n + i]});
     return hits;
 }
 
 std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::vector<TestRay>& rays) {
-    Batch batch = upload(rays);
-    runner_.run("intersect_scalar", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.constants, batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.count);
-    return download(batch);
+    Batch batch = upload(rays, guard_rays);
+    std::vector<TestHit> wanted;
+    for (Version& version : versions_) {
+        for (const char* traversal : traversals) {
+            fill(batch.hits);
+            fill(batch.hit_ids);
+            const std::string kernel = std::string("intersect_") + traversal;
+            version.runner.run(kernel, batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+                               scene.instances, scene.constants, batch.rays, batch.ids, batch.hits,
+                               batch.hit_ids, batch.capacity);
+            const std::vector<TestHit> hits = download(batch);
+            if (wanted.empty()) wanted = hits;
+            const std::string differing = differences(rays, wanted, hits);
+            if (!differing.empty()) FAIL_CHECK(kernel << ' ' << version.options << ": " << differing);
+            if (!is_filled_behind(batch.hits, batch.count, batch.capacity) ||
+                !is_filled_behind(batch.hit_ids, batch.count, batch.capacity))
+                FAIL_CHECK(kernel << ' ' << version.options << " writes behind its " << batch.count
+                                  << " rays");
+        }
+    }
+    return wanted;
+}
+
+void RayTracer::shadow(const DeviceScene& scene, Buffer& hit_ids, Buffer& surfaces, Buffer& brought,
+                       Buffer& outcomes, Buffer& light, std::uint32_t capacity, std::uint32_t count) {
+    const auto before = KernelRunner::download<float>(light, std::size_t{3} * capacity);
+    std::vector<std::uint32_t> wanted;
+    for (Version& version : versions_) {
+        for (const char* traversal : traversals) {
+            light.write(std::span<const float>(before));
+            const std::string kernel = std::string("shadow_") + traversal;
+            version.runner.run(kernel, count, scene.nodes, scene.leaves, scene.polygon_vertices,
+                               scene.instances, scene.primitives, scene.materials, scene.lights,
+                               scene.constants, hit_ids, surfaces, brought, outcomes, light, capacity);
+            const auto bits = KernelRunner::download<std::uint32_t>(light, std::size_t{3} * capacity);
+            if (wanted.empty()) wanted = bits;
+            std::vector<std::size_t> differing;
+            for (std::size_t i = 0; i < bits.size(); ++i) {
+                if (bits[i] != wanted[i]) differing.push_back(i);
+            }
+            if (differing.empty()) continue;
+            const std::size_t first = differing.front();
+            FAIL_CHECK(kernel << ' ' << version.options << " differs in " << differing.size() << " of "
+                              << bits.size() << " numbers, first in number " << first << " of " << count
+                              << " rays: " << std::bit_cast<float>(wanted[first]) << ", "
+                              << std::bit_cast<float>(bits[first]));
+        }
+    }
+}
+
+std::vector<glm::vec3> RayTracer::arriving(const DeviceScene& scene, const std::vector<TestLitPoint>& points,
+                                           const std::vector<glm::vec3>& brought) {
+    const std::size_t count = points.size(), capacity = count + guard_rays;
+    const std::size_t lights = scene.constants.light_count;
+    std::vector<float> surfaces(SAHL_SURFACE_FLOATS * capacity), colors(3 * lights * capacity);
+    std::vector<float> light(3 * capacity);
+    std::vector<std::uint32_t> ids(SAHL_HIT_UINTS * capacity, 0), outcomes(capacity, 0);
+    for (std::size_t i = 0; i < capacity; ++i) {
+        // Behind the end are points like the first that bring light to be added wrongly.
+        const TestLitPoint point = i < count ? points[i] : count > 0 ? points[0] : TestLitPoint{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            surfaces[(SAHL_SURFACE_POSITION + k) * capacity + i] = point.position[static_cast<int>(k)];
+            for (std::size_t l = 0; l < lights; ++l)
+                colors[(3 * l + k) * capacity + i] =
+                    i < count ? brought[l * count + i][static_cast<int>(k)] : 1;
+        }
+        ids[SAHL_HIT_PRIMITIVE * capacity + i] = point.exclude;
+        ids[SAHL_HIT_INSTANCE * capacity + i] = point.exclude_instance;
+        outcomes[i] = point.has_shadow_rays ? SAHL_OUTCOME_SHADOW_RAY : 0;
+    }
+    Buffer hit_ids = scalar().upload(ids), surface_floats = scalar().upload(surfaces);
+    Buffer brought_floats = scalar().upload(colors), outcome_bits = scalar().upload(outcomes);
+    Buffer light_floats = scalar().upload(light);
+    shadow(scene, hit_ids, surface_floats, brought_floats, outcome_bits, light_floats,
+           static_cast<std::uint32_t>(capacity), static_cast<std::uint32_t>(count));
+    const auto sums = KernelRunner::download<float>(light_floats, 3 * capacity);
+    std::vector<glm::vec3> result;
+    for (std::size_t i = 0; i < capacity; ++i) {
+        const glm::vec3 sum(sums[i], sums[capacity + i], sums[2 * capacity + i]);
+        if (i < count) {
+            result.push_back(sum);
+        } else if (sum != glm::vec3(0)) {
+            FAIL_CHECK("a shadow kernel writes behind its " << count << " points");
+            break;
+        }
+    }
+    return result;
 }
 
 std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
     const Leaves leaves = all_leaves(scene);
-    runner_.run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, scene.instances,
-                runner_.upload(leaves.children), runner_.upload(leaves.instances),
-                static_cast<std::uint32_t>(leaves.children.size()), scene.constants.extent, batch.rays,
-                batch.ids, batch.hits, batch.hit_ids);
+    scalar().run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, scene.instances,
+                 scalar().upload(leaves.children), scalar().upload(leaves.instances),
+                 static_cast<std::uint32_t>(leaves.children.size()), scene.constants.extent, batch.rays,
+                 batch.ids, batch.hits, batch.hit_ids);
     return download(batch);
 }
 
 std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                             float t_max) {
     Batch batch = upload(rays);
-    runner_.run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.constants.extent, batch.rays, batch.ids, t_max, batch.hit_ids);
+    scalar().run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                 scene.constants.extent, batch.rays, batch.ids, t_max, batch.hit_ids);
     return KernelRunner::download<Occlusion>(batch.hit_ids, batch.count);
 }
 
@@ -217,8 +277,8 @@ std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vecto
                                       float t_max) {
     Batch batch = upload(rays);
     Buffer out(device(), batch.count * sizeof(TestWalk), "crossings");
-    runner_.run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.constants.extent, batch.rays, batch.ids, t_max, TestWalk::longest, out);
+    scalar().run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                 scene.constants.extent, batch.rays, batch.ids, t_max, TestWalk::longest, out);
     return KernelRunner::download<TestWalk>(out, batch.count);
 }
 
@@ -227,8 +287,8 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
     Batch batch = upload(rays, hits);
     constexpr std::size_t kFloats = 19;
     Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
-    runner_.run("surfaces", batch.count, scene.primitives, scene.shape_data, scene.instances, batch.rays,
-                batch.hits, batch.hit_ids, out);
+    scalar().run("surfaces", batch.count, scene.primitives, scene.shape_data, scene.instances, batch.rays,
+                 batch.hits, batch.hit_ids, out);
     const std::vector<float> parts = KernelRunner::download<float>(out, kFloats * batch.count);
     std::vector<TestSurface> result;
     for (std::size_t i = 0; i < batch.count; ++i) {
@@ -250,13 +310,11 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
            child_ids = buffer(std::size_t{2} * SAHL_RAY_UINTS);
     Buffer outcomes = buffer(1);
     // run() adds the count, which as shade's last parameter says: do spawn.
-    runner_.run("shade", count, scene.primitives, scene.shape_data, scene.instances, scene.materials,
-                scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
-                batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes, batch.count,
-                batch.count);
-    runner_.run("shadow_scalar", count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                scene.primitives, scene.materials, scene.lights, scene.constants, batch.hit_ids, surfaces,
-                brought, outcomes, light, batch.count);
+    scalar().run("shade", count, scene.primitives, scene.shape_data, scene.instances, scene.materials,
+                 scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
+                 batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes, batch.count,
+                 batch.count);
+    shadow(scene, batch.hit_ids, surfaces, brought, outcomes, light, batch.count, batch.count);
 
     const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * count);
     const auto ids = child_ids.map<std::uint32_t>(MapMode::read, std::size_t{2} * SAHL_RAY_UINTS * count);

@@ -1,8 +1,9 @@
-// Rays through scenes by the engine's kernels: the intersect kernel, and test kernels that call the
-// functions behind it.
+// Rays through scenes by the engine's kernels, every way of traversal at once, and by test kernels that call
+// the functions behind them.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct TestHit {
     friend bool operator==(const TestHit& a, const TestHit& b);
 };
 
+/// Which of the rays have hits in `a` that are not bit for bit those in `b`, for a message: how many there
+/// are and the first few in full; empty when there are none.
+std::string differences(const std::vector<TestRay>& rays, const std::vector<TestHit>& a,
+                        const std::vector<TestHit>& b);
+
 /// What surface_at() says of a hit.
 struct TestSurface {
     glm::dvec3 position, ng, ns;
@@ -56,19 +62,43 @@ struct TestSpawn {
     float arrived = 0;     ///< what kernels/shadow.cl left of it
 };
 
-/// Traces batches of rays on the default device.
+/// A point that lamps shine on, as shading leaves it for kernels/shadow.cl.
+struct TestLitPoint {
+    glm::vec3 position{0};
+    std::uint32_t exclude = SAHL_NO_PRIMITIVE;  ///< the primitive it lies on,
+    std::uint32_t exclude_instance = 0;         ///< and its instance
+    bool has_shadow_rays = true;                ///< else nothing is asked about it
+};
+
+/// The code paths of kernels/simd.h, by the build options that force them.
+inline const std::vector<std::string> simd_versions{"", "-DSAHL_NO_AVX512", "-DSAHL_PLAIN_OPENCL"};
+
+/// Traces batches of rays on the default device, by the kernels of every way of traversal in each of the
+/// simd_versions. A test fails where two of them differ in any bit, or where one writes behind its batch.
 class RayTracer {
 public:
-    explicit RayTracer(const std::string& options = "");
+    RayTracer();
 
-    Device& device() { return runner_.device(); }
-    DeviceScene upload(const Scene& scene) { return make_device_scene(runner_.device(), scene); }
+    Device& device() { return *device_; }
+    DeviceScene upload(const Scene& scene) { return make_device_scene(device(), scene); }
 
     /// Nodes to put in the place of a scene's own.
-    Buffer upload_nodes(const std::vector<device::BvhNode>& nodes) { return runner_.upload(nodes); }
+    Buffer upload_nodes(const std::vector<device::BvhNode>& nodes) { return scalar().upload(nodes); }
+    /// Instances to put in the place of a scene's own.
+    Buffer upload_instances(const std::vector<device::DeviceInstance>& instances) {
+        return scalar().upload(instances);
+    }
 
     /// Closest hits by kernels/intersect.cl.
     std::vector<TestHit> intersect(const DeviceScene& scene, const std::vector<TestRay>& rays);
+
+    /// What kernels/shadow.cl lets through of `brought`, which has one colour for each of the scene's lights
+    /// and, for each light, each point: index light · points + point.
+    std::vector<glm::vec3> arriving(const DeviceScene& scene, const std::vector<TestLitPoint>& points,
+                                    const std::vector<glm::vec3>& brought);
+
+    // The rest is asked of the functions behind intersect_scalar and shadow_scalar, in the first version.
+
     /// Closest hits by offering each ray all blocks of all leaves, without the tree.
     std::vector<TestHit> brute_force(DeviceScene& scene, const std::vector<TestRay>& rays);
     /// any_hit() up to `t_max`.
@@ -84,15 +114,25 @@ public:
                                  const std::vector<TestHit>& hits);
 
 private:
+    struct Version {
+        std::string options;
+        KernelRunner runner;
+    };
     struct Batch {
         Buffer rays, ids, hits, hit_ids;
-        std::uint32_t count;
+        std::uint32_t count, capacity;
     };
-    Batch upload(const std::vector<TestRay>& rays);
+    KernelRunner& scalar() { return versions_.front().runner; }
+    /// `guard`: how many rays longer the arrays are; rays like the first.
+    Batch upload(const std::vector<TestRay>& rays, std::uint32_t guard = 0);
     Batch upload(const std::vector<TestRay>& rays, const std::vector<TestHit>& hits);
-    std::vector<TestHit> download(Batch& batch);
+    static std::vector<TestHit> download(Batch& batch);
+    /// Runs `shadow` of every version and way of traversal on the same `light`, which takes what comes out.
+    void shadow(const DeviceScene& scene, Buffer& hit_ids, Buffer& surfaces, Buffer& brought,
+                Buffer& outcomes, Buffer& light, std::uint32_t capacity, std::uint32_t count);
 
-    KernelRunner runner_;
+    std::shared_ptr<Device> device_;
+    std::vector<Version> versions_;
 };
 
 }  // namespace sahl::tests

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace sahl::tests {
 namespace {
@@ -14,12 +15,13 @@ constexpr const char* kRange = R"(
 
 }  // namespace
 
-KernelRunner::KernelRunner(const std::string& text, const std::string& options)
-    : program_(Program::from_text(device_, kRange + text, options)) {}
+KernelRunner::KernelRunner(const std::string& text, const std::string& options,
+                           std::shared_ptr<Device> device)
+    : device_(std::move(device)), program_(Program::from_text(*device_, kRange + text, options)) {}
 
 Launch KernelRunner::whole_range(std::size_t count) const {
-    const std::size_t each = device_.rays_per_item();
-    return {.work_items = (count + each - 1) / each, .items = count};
+    // Also for no indices at all and behind the last one: kernels have to bear work-items without work.
+    return {.work_items = count / device_->rays_per_item() + 1, .items = count};
 }
 
 bool full_tests() {

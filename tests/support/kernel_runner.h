@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,18 +11,19 @@
 
 namespace sahl::tests {
 
-/// A program of test kernels on the default device.
+/// A program of test kernels, on the default device unless one is given.
 class KernelRunner {
 public:
     /// `text`: OpenCL C. A kernel's last parameter is a `uint count`; its work-items share the indices
     /// 0 ≤ i < count by TEST_FOR_EACH(i, count), which this class puts before the text.
-    explicit KernelRunner(const std::string& text, const std::string& options = "");
+    explicit KernelRunner(const std::string& text, const std::string& options = "",
+                          std::shared_ptr<Device> device = std::make_shared<Device>());
 
-    Device& device() { return device_; }
+    Device& device() { return *device_; }
 
     template <class T>
     Buffer upload(const std::vector<T>& values) {
-        Buffer buffer(device_, values.size() * sizeof(T), "test input");
+        Buffer buffer(device(), values.size() * sizeof(T), "test input");
         if (!values.empty()) buffer.write(std::span<const T>(values));
         return buffer;
     }
@@ -43,7 +45,7 @@ public:
     template <class Out, class First, class... More>
     std::vector<Out> map(const std::string& kernel, std::size_t per_index, const std::vector<First>& first,
                          const std::vector<More>&... more) {
-        Buffer out(device_, first.size() * per_index * sizeof(Out), "test output");
+        Buffer out(device(), first.size() * per_index * sizeof(Out), "test output");
         run(kernel, first.size(), upload(first), upload(more)..., out);
         return download<Out>(out, first.size() * per_index);
     }
@@ -51,7 +53,7 @@ public:
 private:
     Launch whole_range(std::size_t count) const;
 
-    Device device_;
+    std::shared_ptr<Device> device_;
     Program program_;
 };
 
