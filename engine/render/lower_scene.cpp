@@ -261,7 +261,10 @@ private:
         push_object_space(world_from_cone, world_base);
         push_exact((apex_radius - base_radius) / base_radius);
         if (turned) lowered_.flags |= SAHL_PRIMITIVE_TURNED;
-        bounds_ = outer_bounds(lo, hi);
+        // Where a ray grazes a rim, its distance has the square root of the rounding's error.
+        const dvec3 size = hi - lo;
+        const dvec3 room(0x1p-12 * std::max({size.x, size.y, size.z}));
+        bounds_ = outer_bounds(lo - room, hi + room);
     }
 
     void add_disc(const Disc& disc) {
