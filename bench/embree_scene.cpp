@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string>
 
 #include <fmt/format.h>
 
@@ -10,8 +9,8 @@
 
 namespace sahl::bench {
 
-EmbreeDevice open_embree() {
-    EmbreeDevice device(rtcNewDevice(nullptr));
+EmbreeDevice open_embree(const std::string& config) {
+    EmbreeDevice device(rtcNewDevice(config.c_str()));
     check_embree(device.get(), "opening a device");
     return device;
 }

@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <memory>
+#include <string>
 #include <type_traits>
 
 #include "engine/scene/scene.h"
@@ -19,8 +20,8 @@ using EmbreeDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, EmbreeRel
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, EmbreeRelease>;
 using EmbreeGeometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, EmbreeRelease>;
 
-/// A device on all cores. Throws Error(device).
-EmbreeDevice open_embree();
+/// A device on all cores. `config`: as rtcNewDevice() takes it. Throws Error(device).
+EmbreeDevice open_embree(const std::string& config = "");
 
 /// Throws Error(device) with `action` if a call since the last check failed.
 void check_embree(RTCDevice device, const char* action);

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "bench/all_cores.h"
-#include "bench/statistics.h"
 
 namespace sahl::bench {
 namespace {
@@ -129,9 +128,9 @@ void EmbreeRays::make_ready() {
     });
 }
 
-double EmbreeRays::trace(RTCScene scene, const EmbreeApi& api) {
+double EmbreeRays::trace(RTCScene scene, const EmbreeApi& api, Clock clock) {
     make_ready();
-    const double start = seconds_now();
+    const double start = seconds_now(clock);
     for_chunks(packets_, chunk / width_, [&](std::size_t begin, std::size_t end) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
@@ -147,7 +146,7 @@ double EmbreeRays::trace(RTCScene scene, const EmbreeApi& api) {
             trace_one_by_one(scene, &context, packets, end - begin, packet_bytes_, rays_.occlusion);
         }
     });
-    return seconds_now() - start;
+    return seconds_now(clock) - start;
 }
 
 std::vector<RayHit> EmbreeRays::hits() const {

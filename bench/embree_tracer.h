@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/rays.h"
+#include "bench/statistics.h"
 #include "engine/device/memory.h"
 
 namespace sahl::bench {
@@ -35,7 +36,7 @@ public:
 
     /// Traces all rays on all cores; returns the seconds it took, from rays that are ready.
     /// `api`: of the same width.
-    double trace(RTCScene scene, const EmbreeApi& api);
+    double trace(RTCScene scene, const EmbreeApi& api, Clock clock = Clock::wall);
 
     /// What the last trace() found.
     std::vector<RayHit> hits() const;

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "bench/statistics.h"
 #include "engine/core/error.h"
 #include "engine/render/ray_queues.h"
 
@@ -71,13 +70,13 @@ Kernel& SahlTracer::kernel_of(const std::string& name) {
                                    : kernels_.emplace(name, program_.kernel(name)).first->second;
 }
 
-double SahlTracer::trace(const SahlKernel& way) {
+double SahlTracer::trace(const SahlKernel& way, Clock clock) {
     const DeviceScene& scene = *scene_;
     Batch& batch = *batch_;
     const std::uint32_t per_item = way.rays_per_item == 0 ? device_.rays_per_item() : way.rays_per_item;
     const Launch launch{(batch.count + per_item - 1) / per_item, 0, batch.count};
     Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + std::string(way.name));
-    const double start = seconds_now();
+    const double start = seconds_now(clock);
     if (batch.occlusion) {
         kernel.launch(launch, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
                       scene.constants, batch.rays, batch.ids, batch.t_max, batch.hit_ids, batch.capacity,
@@ -88,7 +87,7 @@ double SahlTracer::trace(const SahlKernel& way) {
                       batch.count);
     }
     device_.finish();
-    return seconds_now() - start;
+    return seconds_now(clock) - start;
 }
 
 std::vector<RayHit> SahlTracer::hits() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/rays.h"
+#include "bench/statistics.h"
 #include "engine/device/program.h"
 #include "engine/render/device_scene.h"
 
@@ -36,7 +37,7 @@ public:
     void set_rays(const RaySet& rays);
 
     /// Traces all rays; returns the seconds from launch to finish.
-    double trace(const SahlKernel& kernel);
+    double trace(const SahlKernel& kernel, Clock clock = Clock::wall);
 
     /// What the last trace() found.
     std::vector<RayHit> hits();

@@ -1,9 +1,12 @@
 #include "bench/statistics.h"
 
+#include <time.h>  // NOLINT: clock_gettime
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <thread>
 #include <utility>
 
 namespace sahl::bench {
@@ -29,7 +32,13 @@ double geometric_mean(const std::vector<double>& values) {
     return std::exp(sum / static_cast<double>(values.size()));
 }
 
-double seconds_now() {
+double seconds_now(Clock clock) {
+    if (clock == Clock::processor) {
+        timespec time{};
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+        return (static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec)) /
+               std::thread::hardware_concurrency();
+    }
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 

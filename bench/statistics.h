@@ -19,7 +19,11 @@ Spread spread_of_quotients(const std::vector<double>& numerators, const std::vec
 /// Of positive values; 0 where there are none.
 double geometric_mean(const std::vector<double>& values);
 
-/// Seconds since some start, of a clock that never jumps.
-double seconds_now();
+/// Wall-clock time; or the processor time of the whole process, divided by the number of cores: what the same
+/// work would take on a machine that does nothing else, about.
+enum class Clock { wall, processor };
+
+/// Seconds since some start.
+double seconds_now(Clock clock = Clock::wall);
 
 }  // namespace sahl::bench

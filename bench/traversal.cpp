@@ -19,8 +19,9 @@ namespace {
 struct Options {
     std::vector<std::string> scenes, rays, kernels;
     int size = 1024;
-    int repetitions = 7;
+    Measurement measurement;
     DeviceOptions device;
+    std::string embree_config;
     std::string json;
 };
 
@@ -42,8 +43,8 @@ std::vector<RaySet> make_ray_sets(const BenchScene& scene, RTCScene embree, Memo
     return sets;
 }
 
-void measure_mesh(const SceneMaker& maker, SahlTracer& sahl, const std::vector<SahlKernel>& kernels,
-                  RTCDevice embree, const Options& options, std::vector<TraversalCell>& cells) {
+void measure_mesh(const SceneMaker& maker, SahlTracer& sahl, RTCDevice embree, const Options& options,
+                  std::vector<TraversalCell>& cells) {
     const BenchScene scene = maker.make();
     sahl.set_scene(scene.scene);
     const EmbreeGeometry triangles = embree_triangles(embree, scene.scene);
@@ -52,15 +53,15 @@ void measure_mesh(const SceneMaker& maker, SahlTracer& sahl, const std::vector<S
     const EmbreeScene robust =
         embree_scene(embree, triangles.get(), RTC_BUILD_QUALITY_HIGH, RTC_SCENE_FLAG_ROBUST);
     for (const RaySet& rays : make_ray_sets(scene, robust.get(), sahl.device().memory(), options)) {
-        cells.push_back(measure_cell(scene, rays, sahl, kernels, {"triangles", fast.get(), robust.get()},
-                                     options.repetitions));
+        cells.push_back(
+            measure_cell(scene, rays, sahl, {"triangles", fast.get(), robust.get()}, options.measurement));
         print_cell(cells.back());
     }
 }
 
 /// Spheres, cones or polygons: camera and diffuse rays alone.
-void measure_field(const SceneMaker& maker, SahlTracer& sahl, const std::vector<SahlKernel>& kernels,
-                   RTCDevice embree, const Options& options, std::vector<TraversalCell>& cells) {
+void measure_field(const SceneMaker& maker, SahlTracer& sahl, RTCDevice embree, const Options& options,
+                   std::vector<TraversalCell>& cells) {
     const BenchScene field = maker.make();
     sahl.set_scene(field.scene);
     const OwnedUserShapes shapes = user_shapes(field.scene);
@@ -75,7 +76,7 @@ void measure_field(const SceneMaker& maker, SahlTracer& sahl, const std::vector<
     for (const RaySet& rays : make_ray_sets(field, user_scene.get(), sahl.device().memory(), options)) {
         if (rays.kind != "primary" && rays.kind != "diffuse") continue;
         const auto measure = [&](const EmbreeSide& side) {
-            cells.push_back(measure_cell(field, rays, sahl, kernels, side, options.repetitions));
+            cells.push_back(measure_cell(field, rays, sahl, side, options.measurement));
             print_cell(cells.back());
         };
         if (sphere_scene) measure({"spheres", sphere_scene.get(), nullptr});
@@ -90,27 +91,37 @@ void run(const Options& options) {
     std::erase_if(kernels,
                   [&](const SahlKernel& kernel) { return !is_wanted(options.kernels, kernel.name); });
     if (kernels.empty()) throw Error(ExitCode::usage, "--kernel names no kernel");
-    const EmbreeDevice embree = open_embree();
+    const EmbreeDevice embree = open_embree(options.embree_config);
 
     std::vector<TraversalCell> cells;
     print_head();
     for (const SceneMaker& maker : mesh_makers()) {
-        if (is_wanted(options.scenes, maker.name))
-            measure_mesh(maker, sahl, kernels, embree.get(), options, cells);
+        if (is_wanted(options.scenes, maker.name)) measure_mesh(maker, sahl, embree.get(), options, cells);
     }
     for (const SceneMaker& maker : field_makers()) {
-        if (is_wanted(options.scenes, maker.name))
-            measure_field(maker, sahl, kernels, embree.get(), options, cells);
+        if (is_wanted(options.scenes, maker.name)) measure_field(maker, sahl, embree.get(), options, cells);
     }
     print_means(cells);
 
     if (options.json.empty()) return;
-    nlohmann::ordered_json report{
-        {"machine", machine_facts()},         {"size", options.size},
-        {"repetitions", options.repetitions}, {"build_options", options.device.build_options},
-        {"means", means_json(cells)},         {"cells", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json report{{"machine", machine_facts()},
+                                  {"size", options.size},
+                                  {"repetitions", options.measurement.repetitions},
+                                  {"clock", options.measurement.clock == Clock::wall ? "wall" : "processor"},
+                                  {"build_options", options.device.build_options},
+                                  {"embree_config", options.embree_config},
+                                  {"means", means_json(cells)},
+                                  {"cells", nlohmann::ordered_json::array()}};
     for (const TraversalCell& cell : cells) report["cells"].push_back(cell_json(cell));
     write_report(report, options.json);
+}
+
+void choose_kernels(Options& options) {
+    for (const SahlKernel& kernel : sahl_kernels()) {
+        if (is_wanted(options.kernels, kernel.name)) options.measurement.kernels.push_back(kernel);
+    }
+    if (options.measurement.kernels.empty())
+        throw Error(ExitCode::usage, "--kernel names no kernel of Sahl's");
 }
 
 void add_options(CLI::App& app, Options& options) {
@@ -123,12 +134,16 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--size", options.size, "Camera rays are size x size")
         ->check(CLI::Range(8, 8192))
         ->capture_default_str();
-    app.add_option("--repetitions", options.repetitions, "Measurements that medians are of")
+    app.add_option("--repetitions", options.measurement.repetitions, "Measurements that medians are of")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    app.add_flag_callback(
+        "--processor-time", [&] { options.measurement.clock = Clock::processor; },
+        "Measure processor time over cores instead of time, where the machine has other work");
     app.add_option("--device", options.device.selector, "OpenCL device, as for sahl");
     app.add_option("--build-options", options.device.build_options,
                    "More options for the OpenCL compiler, as -DSAHL_NO_AVX512 or -DSAHL_PLAIN_OPENCL");
+    app.add_option("--embree", options.embree_config, "Configuration of Embree, as isa=avx2");
 }
 
 }  // namespace
@@ -140,6 +155,7 @@ int main(int argc, char** argv) {
         sahl::bench::Options options;
         sahl::bench::add_options(app, options);
         CLI11_PARSE(app, argc, argv);
+        sahl::bench::choose_kernels(options);
         sahl::bench::run(options);
     } catch (const sahl::Error& error) {
         fmt::print(stderr, "sahl_bench_traversal: {}\n", error.what());

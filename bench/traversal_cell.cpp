@@ -21,16 +21,19 @@ struct EmbreeWay {
     const EmbreeApi* api;
     RTCScene scene;
 
-    double trace(EmbreeLayouts& layouts) const { return layouts.at(api->width).trace(scene, *api); }
+    double trace(EmbreeLayouts& layouts, Clock clock) const {
+        return layouts.at(api->width).trace(scene, *api, clock);
+    }
 };
 
-std::vector<EmbreeWay> fastest_ways(EmbreeLayouts& layouts, RTCScene scene) {
+std::vector<EmbreeWay> fastest_ways(EmbreeLayouts& layouts, RTCScene scene, Clock clock) {
     std::vector<EmbreeWay> ways;
     std::vector<double> seconds;
     for (const EmbreeApi& api : embree_apis()) {
         ways.push_back({&api, scene});
-        seconds.push_back(ways.back().trace(layouts));
-        seconds.back() = std::min(seconds.back(), ways.back().trace(layouts));
+        seconds.push_back(ways.back().trace(layouts, clock));
+        for (int i = 0; i < 2; ++i)
+            seconds.back() = std::min(seconds.back(), ways.back().trace(layouts, clock));
     }
     const double limit = worth_timing * *std::min_element(seconds.begin(), seconds.end());
     std::vector<EmbreeWay> fastest;
@@ -50,7 +53,7 @@ std::vector<Runs> runs_of(const std::vector<EmbreeWay>& ways, bool occlusion) {
 std::vector<RayHit> best_hits(const std::vector<EmbreeWay>& ways, const std::vector<Runs>& runs,
                               EmbreeLayouts& layouts) {
     const EmbreeWay& way = ways[static_cast<std::size_t>(&best_of(runs) - runs.data())];
-    way.trace(layouts);
+    way.trace(layouts, Clock::wall);
     return layouts.at(way.api->width).hits();
 }
 
@@ -100,28 +103,27 @@ const Runs& best_of(const std::vector<Runs>& runs) {
 }
 
 TraversalCell measure_cell(const BenchScene& scene, const RaySet& rays, SahlTracer& sahl,
-                           const std::vector<SahlKernel>& kernels, const EmbreeSide& embree,
-                           int repetitions) {
+                           const EmbreeSide& embree, const Measurement& how) {
     TraversalCell cell{scene.name, rays.kind, embree.geometry, rays.size(), {}, {}, {}, {}, {}};
     EmbreeLayouts layouts;
     for (const EmbreeApi& api : embree_apis())
         layouts.try_emplace(api.width, sahl.device().memory(), rays, api.width);
     sahl.set_rays(rays);
-    warm_up(sahl, kernels, rays);
+    warm_up(sahl, how.kernels, rays);
 
-    const std::vector<EmbreeWay> fast = fastest_ways(layouts, embree.fast);
+    const std::vector<EmbreeWay> fast = fastest_ways(layouts, embree.fast, how.clock);
     const std::vector<EmbreeWay> robust =
-        embree.robust != nullptr ? fastest_ways(layouts, embree.robust) : std::vector<EmbreeWay>{};
+        embree.robust != nullptr ? fastest_ways(layouts, embree.robust, how.clock) : std::vector<EmbreeWay>{};
     cell.embree = runs_of(fast, rays.occlusion);
     cell.robust = runs_of(robust, rays.occlusion);
-    for (const SahlKernel& kernel : kernels) cell.sahl.push_back({kernel.name, {}});
-    for (int repetition = 0; repetition < repetitions; ++repetition) {
+    for (const SahlKernel& kernel : how.kernels) cell.sahl.push_back({kernel.name, {}});
+    for (int repetition = 0; repetition < how.repetitions; ++repetition) {
         for (std::size_t i = 0; i < fast.size(); ++i)
-            cell.embree[i].seconds.push_back(fast[i].trace(layouts));
-        for (std::size_t i = 0; i < kernels.size(); ++i)
-            cell.sahl[i].seconds.push_back(sahl.trace(kernels[i]));
+            cell.embree[i].seconds.push_back(fast[i].trace(layouts, how.clock));
+        for (std::size_t i = 0; i < how.kernels.size(); ++i)
+            cell.sahl[i].seconds.push_back(sahl.trace(how.kernels[i], how.clock));
         for (std::size_t i = 0; i < robust.size(); ++i)
-            cell.robust[i].seconds.push_back(robust[i].trace(layouts));
+            cell.robust[i].seconds.push_back(robust[i].trace(layouts, how.clock));
     }
 
     const std::vector<RayHit> sahl_hits = sahl.hits();
@@ -131,7 +133,7 @@ TraversalCell measure_cell(const BenchScene& scene, const RaySet& rays, SahlTrac
             differing_rays(rays, sahl_hits, best_hits(robust, cell.robust, layouts)).size();
     cell.differences =
         explain(scene.scene, rays, differing_rays(rays, sahl_hits, embree_hits), sahl_hits, embree_hits, sahl,
-                kernels.front(), embree.robust != nullptr ? embree.robust : embree.fast);
+                how.kernels.front(), embree.robust != nullptr ? embree.robust : embree.fast);
     return cell;
 }
 

@@ -40,9 +40,16 @@ struct TraversalCell {
 /// The run with the least median. Of at least one.
 const Runs& best_of(const std::vector<Runs>& runs);
 
-/// Measures `repetitions` times in turn and compares what was found; rays and scene of `sahl` are set here
-/// and by the caller. Throws Error(internal) when two of Sahl's kernels do not agree bit by bit.
+/// How the cells are measured.
+struct Measurement {
+    std::vector<SahlKernel> kernels;
+    int repetitions = 7;
+    Clock clock = Clock::wall;
+};
+
+/// Measures both sides in turn and compares what they found; the caller has given `sahl` the scene. Throws
+/// Error(internal) when two of Sahl's kernels do not agree bit by bit.
 TraversalCell measure_cell(const BenchScene& scene, const RaySet& rays, SahlTracer& sahl,
-                           const std::vector<SahlKernel>& kernels, const EmbreeSide& embree, int repetitions);
+                           const EmbreeSide& embree, const Measurement& how);
 
 }  // namespace sahl::bench
