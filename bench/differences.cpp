@@ -31,6 +31,18 @@ double rounding_of(const ExactHit& hit, const glm::vec3& origin, const glm::vec3
 
 }  // namespace
 
+Differences& Differences::operator+=(const Differences& other) {
+    sahl_misses += other.sahl_misses;
+    embree_misses += other.embree_misses;
+    distances += other.distances;
+    at_outline += other.at_outline;
+    rounding += other.rounding;
+    sahl_right += other.sahl_right;
+    embree_right += other.embree_right;
+    both_wrong += other.both_wrong;
+    return *this;
+}
+
 std::vector<std::size_t> differing_rays(const RaySet& rays, const std::vector<RayHit>& sahl,
                                         const std::vector<RayHit>& embree) {
     std::vector<std::size_t> places;

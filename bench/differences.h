@@ -24,6 +24,7 @@ struct Differences {
     std::uint64_t both_wrong = 0;
 
     std::uint64_t rays() const { return sahl_misses + embree_misses + distances; }
+    Differences& operator+=(const Differences& other);
 };
 
 /// The rays of which the sides say something else: hit or not, or t by more than 1e-4 of it.

@@ -1,6 +1,7 @@
 // The rays that both sides trace, and what they say of them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,9 +14,12 @@
 
 namespace sahl::bench {
 
+/// Camera rays, and what follows them from where they end.
+inline constexpr std::array ray_kinds{"primary", "shadow", "diffuse", "mirror", "refracted"};
+
 /// Rays 0 < t < t_max. `occlusion`: asked is only whether they meet anything.
 struct RaySet {
-    std::string kind;
+    std::string kind;  ///< of ray_kinds
     bool occlusion = false;
     float t_max = 0;
     std::vector<glm::vec3> origins, directions;

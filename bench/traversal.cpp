@@ -87,10 +87,6 @@ void measure_field(const SceneMaker& maker, SahlTracer& sahl, RTCDevice embree, 
 void run(const Options& options) {
     if (options.size % 8 != 0) throw Error(ExitCode::usage, "--size must be a multiple of 8");
     SahlTracer sahl(options.device);
-    std::vector<SahlKernel> kernels(sahl_kernels().begin(), sahl_kernels().end());
-    std::erase_if(kernels,
-                  [&](const SahlKernel& kernel) { return !is_wanted(options.kernels, kernel.name); });
-    if (kernels.empty()) throw Error(ExitCode::usage, "--kernel names no kernel");
     const EmbreeDevice embree = open_embree(options.embree_config);
 
     std::vector<TraversalCell> cells;
@@ -102,6 +98,7 @@ void run(const Options& options) {
         if (is_wanted(options.scenes, maker.name)) measure_field(maker, sahl, embree.get(), options, cells);
     }
     print_means(cells);
+    print_differences(cells);
 
     if (options.json.empty()) return;
     nlohmann::ordered_json report{{"machine", machine_facts()},
@@ -120,17 +117,33 @@ void choose_kernels(Options& options) {
     for (const SahlKernel& kernel : sahl_kernels()) {
         if (is_wanted(options.kernels, kernel.name)) options.measurement.kernels.push_back(kernel);
     }
-    if (options.measurement.kernels.empty())
-        throw Error(ExitCode::usage, "--kernel names no kernel of Sahl's");
+}
+
+/// Of everything in a table with names.
+template <class Table>
+std::vector<std::string> names_of(const Table& table) {
+    std::vector<std::string> names;
+    for (const auto& entry : table) names.emplace_back(entry.name);
+    return names;
+}
+
+/// An option that names some of `all`.
+void add_selection(CLI::App& app, const char* option, std::vector<std::string>& selected, const char* what,
+                   const std::vector<std::string>& all) {
+    app.add_option(option, selected, what)
+        ->delimiter(',')
+        ->check(CLI::IsMember(all))
+        ->type_name("NAME,NAME...");
 }
 
 void add_options(CLI::App& app, Options& options) {
+    std::vector<std::string> scenes = names_of(mesh_makers()), fields = names_of(field_makers());
+    scenes.insert(scenes.end(), fields.begin(), fields.end());
     app.add_option("--json", options.json, "Write all figures to this file");
-    app.add_option("--scene", options.scenes, "These alone, as in organic,terrain,spheres-10k")
-        ->delimiter(',');
-    app.add_option("--rays", options.rays, "These alone: primary, shadow, diffuse, mirror, refracted")
-        ->delimiter(',');
-    app.add_option("--kernel", options.kernels, "These of Sahl's alone")->delimiter(',');
+    add_selection(app, "--scene", options.scenes, "These scenes alone", scenes);
+    add_selection(app, "--rays", options.rays, "These rays alone", {ray_kinds.begin(), ray_kinds.end()});
+    add_selection(app, "--kernel", options.kernels, "These of Sahl's kernels alone",
+                  names_of(sahl_kernels()));
     app.add_option("--size", options.size, "Camera rays are size x size")
         ->check(CLI::Range(8, 8192))
         ->capture_default_str();

@@ -31,7 +31,7 @@ struct Mean {
 
 std::vector<Mean> means(const std::vector<TraversalCell>& cells) {
     std::vector<Mean> means;
-    for (const char* kind : {"primary", "shadow", "diffuse", "mirror", "refracted"}) {
+    for (const char* kind : ray_kinds) {
         std::vector<double> fast, robust;
         for (const TraversalCell& cell : cells) {
             if (cell.rays != kind || !is_mesh(cell)) continue;
@@ -79,6 +79,27 @@ void print_means(const std::vector<TraversalCell>& cells) {
                "least");
     for (const Mean& mean : means(cells))
         fmt::print("{:<10}{:>7.2f}{:>8.2f}{:>8.2f}\n", mean.rays, mean.fast, mean.robust, mean.least);
+}
+
+void print_differences(const std::vector<TraversalCell>& cells) {
+    fmt::print(
+        "\nRays that differ, and what double precision says of the primitives that both sides name\n"
+        "{:<13}{:>9}{:>9}{:>9}{:>9} |{:>9}{:>9}{:>9}{:>9}{:>9}\n"
+        "{:<13}{:>9}{:>9}{:>9}{:>9} |{:>9}{:>9}{:>9}{:>9}{:>9}\n",
+        "", "of", "Sahl", "Embree", "other", "at an", "both", "Sahl", "Embree", "both", "scene", "millions",
+        "misses", "misses", "distance", "outline", "right", "right", "right", "wrong");
+    for (auto cell = cells.begin(); cell != cells.end();) {
+        const std::string& scene = cell->scene;
+        Differences sum;
+        double rays = 0;
+        for (; cell != cells.end() && cell->scene == scene; ++cell) {
+            sum += cell->differences;
+            rays += static_cast<double>(cell->count);
+        }
+        fmt::print("{:<13}{:>9.2f}{:>9}{:>9}{:>9} |{:>9}{:>9}{:>9}{:>9}{:>9}\n", scene, 1e-6 * rays,
+                   sum.sahl_misses, sum.embree_misses, sum.distances, sum.at_outline, sum.rounding,
+                   sum.sahl_right, sum.embree_right, sum.both_wrong);
+    }
 }
 
 nlohmann::ordered_json cell_json(const TraversalCell& cell) {

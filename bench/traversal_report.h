@@ -13,6 +13,8 @@ namespace sahl::bench {
 void print_head();
 void print_cell(const TraversalCell& cell);
 void print_means(const std::vector<TraversalCell>& cells);
+/// The differing rays of all cells, scene by scene.
+void print_differences(const std::vector<TraversalCell>& cells);
 
 /// Millions of rays a second, ratios Sahl over Embree's best way, spreads from least to largest over the
 /// repetitions, and the rays that differ.
