@@ -185,6 +185,7 @@ Json info_event(const InfoOptions& options, const Scene& scene, const SceneInfo&
               {"leaves", info.leaves},
               {"world",
                {{"primitives", info.bvh.primitives},
+                {"references", info.bvh.references},
                 {"nodes", info.bvh.nodes},
                 {"leaves", info.bvh.leaves},
                 {"depth", info.bvh.depth},

@@ -5,32 +5,46 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <vector>
 
 #include "engine/accel/bvh.h"
+#include "engine/accel/collapse_plan.h"
 
 namespace sahl {
 
-/// Stands for a set that is a leaf: at most SAHL_BLOCK_WIDTH primitives of one kind.
-inline constexpr std::uint32_t binary_leaf = 0xffffffffu;
+/// Marks a child that is a leaf, in the lower bits the size of its set: at most SAHL_BLOCK_WIDTH primitives
+/// of one kind. Other children are indices of nodes.
+inline constexpr std::uint32_t binary_leaf = 0x80000000u;
 
-/// The inner node of a set. Its index m is its split: of the primitives [begin, end) its left
-/// child has [begin, m), its right one [m, end). Splits are unique, so nodes built by different
-/// threads find their places without a shared counter and are the same in every run.
-/// No defaulted members: most of the array is never touched.
+/// How much a wide tree is: nodes, leaves and lines of its leaves' blocks.
+struct WideExtent {
+    std::uint32_t nodes;
+    std::uint32_t leaves;
+    std::uint32_t lines;
+};
+
+/// The inner node of a set. Its index is where the references of its right child begin; those of its left
+/// child begin where its own do. Indices are unique, so nodes built by different threads find their places
+/// without a shared counter and are the same in every run. No defaulted members: most of the array is never
+/// touched.
 struct BinaryNode {
     Bounds bounds;
     std::uint32_t left;
     std::uint32_t right;
+    CutPlan plan;
+    WideExtent extent;  ///< for collapse(), of those that become wide nodes
 };
 
 struct BinaryTree {
-    std::unique_ptr<BinaryNode[]> nodes;  ///< as many as primitives; unused ones are not set
+    std::vector<BuildPrimitive> references;  ///< a primitive may have several, of parts of it
+    std::unique_ptr<BinaryNode[]> nodes;     ///< as many as references; unused ones are not set
     std::uint32_t root = binary_leaf;
+    Bounds bounds{};
 };
 
-/// Orders `primitives` (at least one) and builds the tree over them. No path has more than
-/// SAHL_MAX_TREE_DEPTH splits. Bounds must have no negative zeros.
-BinaryTree build_binary_tree(std::span<BuildPrimitive> primitives);
+/// Builds the tree over `primitives` (at least one). No path has more than SAHL_MAX_TREE_DEPTH splits.
+/// Bounds must have no negative zeros. References are most_references(primitives) at most; triangles are cut
+/// in space if `corners` are given.
+BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners);
 
 }  // namespace sahl

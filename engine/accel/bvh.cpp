@@ -47,8 +47,9 @@ Bounds slot_bounds(const device::BvhNode& node, std::size_t slot) {
 }
 
 // Depth-first order puts parents before children: levels are known in one pass.
-BvhStatistics measure(const Bvh& bvh) {
+BvhStatistics measure(const Bvh& bvh, std::size_t primitives) {
     BvhStatistics statistics;
+    statistics.primitives = primitives;
     statistics.nodes = bvh.nodes.size();
     statistics.leaves = bvh.leaves.size();
     const double root_area = half_area(bvh.bounds);
@@ -68,29 +69,30 @@ BvhStatistics measure(const Bvh& bvh) {
         }
     }
     statistics.sah_cost = cost / node_visit_cost;
-    for (const BvhLeaf& leaf : bvh.leaves) statistics.primitives += leaf.count;
+    for (const BvhLeaf& leaf : bvh.leaves) statistics.references += leaf.count;
     if (statistics.leaves > 0) {
         statistics.leaf_fill =
-            static_cast<double>(statistics.primitives) / static_cast<double>(statistics.leaves);
+            static_cast<double>(statistics.references) / static_cast<double>(statistics.leaves);
     }
     return statistics;
 }
 
 }  // namespace
 
-Bvh build_bvh(std::vector<BuildPrimitive> primitives) {
+Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners) {
     const auto start = std::chrono::steady_clock::now();
     check(primitives);
+    const std::size_t size = primitives.size();
     Bvh bvh;
     if (primitives.empty()) {
         bvh.nodes.push_back(empty_node());
     } else {
         remove_negative_zeros(primitives);
-        collapse(build_binary_tree(primitives), primitives, bvh);
-        bvh.bounds = empty_bounds();
-        for (std::size_t slot = 0; slot < 8; ++slot) extend(bvh.bounds, slot_bounds(bvh.nodes[0], slot));
+        BinaryTree tree = build_binary_tree(std::move(primitives), corners);
+        collapse(tree, bvh);
+        bvh.bounds = tree.bounds;
     }
-    bvh.statistics = measure(bvh);
+    bvh.statistics = measure(bvh, size);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     bvh.statistics.build_seconds = seconds.count();
     return bvh;

@@ -1,68 +1,44 @@
 #include "engine/accel/partition.h"
 
-#include <algorithm>
-#include <vector>
-
-#include <tbb/parallel_for.h>
+#include <tuple>
 
 namespace sahl {
 
-namespace {
-
-constexpr std::size_t chunk_size = 1u << 14;
-
-// Counts what goes left in each chunk, gives each chunk its places on both sides, and moves all
-// through `scratch`. Stable, so it does not matter who moves which chunk when.
-std::size_t partition_parallel(std::span<BuildPrimitive> primitives, std::span<BuildPrimitive> scratch,
-                               const Split& split) {
-    const std::size_t chunks = (primitives.size() + chunk_size - 1) / chunk_size;
-    const auto chunk_of = [&](std::size_t chunk) {
-        const std::size_t begin = chunk * chunk_size;
-        return primitives.subspan(begin, std::min(chunk_size, primitives.size() - begin));
+void swap_ranges(std::span<const std::span<BuildPrimitive>> a, std::span<const std::span<BuildPrimitive>> b) {
+    struct Swap {
+        BuildPrimitive* a;
+        BuildPrimitive* b;
+        std::size_t size;
     };
-    std::vector<std::size_t> left_before(chunks + 1, 0);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-        const auto part = chunk_of(chunk);
-        const auto left = std::count_if(part.begin(), part.end(), [&](const BuildPrimitive& primitive) {
-            return split.goes_left(primitive);
-        });
-        left_before[chunk + 1] = static_cast<std::size_t>(left);
-    });
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) left_before[chunk + 1] += left_before[chunk];
-    const std::size_t left_size = left_before[chunks];
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-        std::size_t left = left_before[chunk];
-        std::size_t right = left_size + chunk * chunk_size - left;
-        for (const BuildPrimitive& primitive : chunk_of(chunk)) {
-            scratch[split.goes_left(primitive) ? left++ : right++] = primitive;
+    std::vector<Swap> swaps;
+    std::size_t from_a = 0, from_b = 0;  // what of the first ranges is done
+    while (!a.empty() && !b.empty()) {
+        const std::size_t size = std::min(a.front().size() - from_a, b.front().size() - from_b);
+        swaps.push_back({a.front().data() + from_a, b.front().data() + from_b, size});
+        from_a += size;
+        from_b += size;
+        if (from_a == a.front().size()) {
+            a = a.subspan(1);
+            from_a = 0;
         }
+        if (from_b == b.front().size()) {
+            b = b.subspan(1);
+            from_b = 0;
+        }
+    }
+    tbb::parallel_for(std::size_t{0}, swaps.size(), [&](std::size_t i) {
+        std::swap_ranges(swaps[i].a, swaps[i].a + swaps[i].size, swaps[i].b);
     });
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-        const auto part = chunk_of(chunk);
-        std::copy_n(scratch.begin() + static_cast<std::ptrdiff_t>(chunk * chunk_size), part.size(),
-                    part.begin());
-    });
-    return left_size;
-}
-
-}  // namespace
-
-std::size_t partition(std::span<BuildPrimitive> primitives, std::span<BuildPrimitive> scratch,
-                      const Split& split) {
-    if (primitives.size() >= parallel_set_size) return partition_parallel(primitives, scratch, split);
-    const auto middle =
-        std::partition(primitives.begin(), primitives.end(),
-                       [&](const BuildPrimitive& primitive) { return split.goes_left(primitive); });
-    return static_cast<std::size_t>(middle - primitives.begin());
 }
 
 void partition_by_rank(std::span<BuildPrimitive> primitives, int axis, std::size_t left_size) {
+    const auto rank = [axis](const BuildPrimitive& p) {
+        const auto& [lo, hi] = p.bounds;
+        return std::tuple(lo[axis] + hi[axis], p.id, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
+    };
     std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(left_size),
-                     primitives.end(), [&](const BuildPrimitive& a, const BuildPrimitive& b) {
-                         const float centroid_a = a.bounds.lo[axis] + a.bounds.hi[axis];
-                         const float centroid_b = b.bounds.lo[axis] + b.bounds.hi[axis];
-                         return centroid_a != centroid_b ? centroid_a < centroid_b : a.id < b.id;
-                     });
+                     primitives.end(),
+                     [&](const BuildPrimitive& a, const BuildPrimitive& b) { return rank(a) < rank(b); });
 }
 
 }  // namespace sahl

@@ -40,7 +40,26 @@ struct VectorBox {
         hi = other_hi > hi ? other_hi : hi;
     }
     void extend(const VectorBox& other) { extend(other.lo, other.hi); }
+    /// A box around both.
+    VectorBox with(VectorBox other) const {
+        other.extend(*this);
+        return other;
+    }
     Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
+
+inline VectorBox box_of(const BuildPrimitive& primitive) { return {load_lo(primitive), load_hi(primitive)}; }
+
+inline double half_area(const VectorBox& box) { return half_area(box.bounds()); }
+
+/// Whether a box contains nothing.
+inline bool is_empty(const VectorBox& box) {
+    return !(box.lo[0] <= box.hi[0] && box.lo[1] <= box.hi[1] && box.lo[2] <= box.hi[2]);
+}
+
+/// What two boxes have in common, which may be nothing.
+inline VectorBox intersection(const VectorBox& a, const VectorBox& b) {
+    return {a.lo > b.lo ? a.lo : b.lo, a.hi < b.hi ? a.hi : b.hi};
+}
 
 }  // namespace sahl

@@ -30,15 +30,18 @@ float largest_coordinate(const Bounds& bounds) {
 /// The trees of groups, each built when it is first wanted.
 class GroupTrees {
 public:
-    GroupTrees(const Scene& scene, std::span<const BuildPrimitive> primitives)
-        : scene_(scene), primitives_(primitives), trees_(scene.groups.size()) {}
+    GroupTrees(const Scene& scene, std::span<const BuildPrimitive> primitives, const TriangleCorners& corners)
+        : scene_(scene), primitives_(primitives), corners_(corners), trees_(scene.groups.size()) {}
 
     const Bvh& of(std::uint32_t group) {
         std::optional<Bvh>& tree = trees_[group];
         if (!tree) {
             const Group& g = scene_.groups[group];
             const auto range = primitives_.subspan(g.first_primitive, g.primitive_count);
-            tree = build_bvh({range.begin(), range.end()});
+            std::vector<BuildPrimitive> primitives;
+            primitives.reserve(most_references(range.size()));
+            primitives.assign(range.begin(), range.end());
+            tree = build_bvh(std::move(primitives), corners_);
         }
         return *tree;
     }
@@ -57,6 +60,7 @@ public:
 private:
     const Scene& scene_;
     std::span<const BuildPrimitive> primitives_;
+    TriangleCorners corners_;
     std::vector<std::optional<Bvh>> trees_;
 };
 
@@ -119,11 +123,11 @@ HostScene make_host_scene(const Scene& scene) {
     out.lowered = lower_scene(scene);
     std::vector<BuildPrimitive> primitives = std::exchange(out.lowered.build_primitives, {});
     const std::vector<PlacedGroup> placed = place_instances(scene);
-    std::vector<BuildPrimitive> world;
-    world.reserve(world_primitive_count(scene) + placed.size());
-    world.assign(primitives.begin(), primitives.begin() + world_primitive_count(scene));
+    std::vector<BuildPrimitive> placed_boxes;
+    placed_boxes.reserve(placed.size());
 
-    GroupTrees trees(scene, primitives);
+    const TriangleCorners corners{out.lowered.shape_data.data(), out.lowered.primitives.data()};
+    GroupTrees trees(scene, primitives, corners);
     out.instances.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
         const PlacedGroup& instance = placed[i];
@@ -141,11 +145,15 @@ HostScene make_host_scene(const Scene& scene) {
             condition_of(glm::dmat3(instance.world_from_group), glm::dmat3(group_from_world));
         const Bounds box = world_bounds(bounds, instance.world_from_group, condition);
         if (!is_finite(box)) fail("has no finite place in the world");
-        world.push_back({box, SAHL_KIND_INSTANCE, static_cast<std::uint32_t>(i)});
+        placed_boxes.push_back({box, SAHL_KIND_INSTANCE, static_cast<std::uint32_t>(i)});
     }
 
-    const bool empty = world.empty();
-    out.bvh = build_bvh(std::move(world));
+    primitives.resize(world_primitive_count(scene));
+    primitives.reserve(most_references(primitives.size() + placed_boxes.size()));
+    primitives.insert(primitives.end(), placed_boxes.begin(), placed_boxes.end());
+    placed_boxes = {};
+    const bool empty = primitives.empty();
+    out.bvh = build_bvh(std::move(primitives), corners);
     const std::vector<std::uint32_t> roots = trees.append_to(out.bvh);
     for (std::size_t i = 0; i < placed.size(); ++i) out.instances[i].root = roots[placed[i].group];
 

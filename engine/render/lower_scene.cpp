@@ -408,7 +408,7 @@ LoweredScene lower_scene(const Scene& scene) {
     out.shape_data.reserve(most_shape_data(scene));
     out.polygon_vertices.reserve(3 * polygon_vertex_count(scene));
     out.primitives.reserve(count);
-    out.build_primitives.reserve(count);
+    out.build_primitives.reserve(most_references(count));  // as build_bvh() wants it
     Lowering lowering(scene, out);
     for (std::uint32_t id = 0; id < count; ++id) {
         lowering.add(id);

@@ -64,8 +64,9 @@ std::uint64_t most_lines(PrimitiveKind kind) {
 SceneMemory bound_scene_memory(const Scene& scene) {
     const std::uint64_t placed = count_placed_instances(scene);
     const std::uint64_t items = scene.primitives.size() + placed;
+    const std::uint64_t references = most_references(items);
     const std::uint64_t nodes = most_nodes(items) + scene.groups.size() + 1;
-    std::uint64_t lines = 0;
+    std::uint64_t lines = (references - items) * block_lines(SAHL_KIND_TRIANGLE);  // only triangles are cut
     for (const Primitive& primitive : scene.primitives) lines += most_lines(primitive.kind);
 
     SceneMemory memory = shading_memory(scene, most_shape_data(scene), placed);
@@ -74,10 +75,11 @@ SceneMemory bound_scene_memory(const Scene& scene) {
     // The trees of groups are built apart and then joined with the world's.
     const std::uint64_t copies = scene.groups.empty() ? 1 : 2;
     const std::uint64_t host = memory.shapes + memory.instances + memory.materials +
-                               copies * (memory.nodes + items * sizeof(BvhLeaf));
-    // The builder's primitives, those of one tree, its scratch space and its binary nodes.
-    const std::uint64_t builder = items * (3 * sizeof(BuildPrimitive) + sizeof(BinaryNode)) +
-                                  nodes * sizeof(int) + placed * sizeof(PlacedGroup);
+                               copies * (memory.nodes + references * sizeof(BvhLeaf));
+    // The builder's primitives, the references of one tree and its binary nodes.
+    const std::uint64_t builder = references * (2 * sizeof(BuildPrimitive) + sizeof(BinaryNode)) +
+                                  nodes * sizeof(int) +
+                                  placed * (sizeof(PlacedGroup) + sizeof(BuildPrimitive));
     // Of the host's arrays one at a time is there on the device as well.
     memory.building =
         host + std::max({builder, memory.nodes, memory.leaf_blocks, memory.shapes, memory.instances});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -13,12 +14,12 @@ using namespace sahl::test;
 namespace {
 
 std::uint32_t depth_of(const BinaryTree& tree, std::uint32_t node) {
-    if (node == binary_leaf) return 0;
+    if ((node & binary_leaf) != 0) return 0;
     return 1 + std::max(depth_of(tree, tree.nodes[node].left), depth_of(tree, tree.nodes[node].right));
 }
 
 std::uint32_t binary_depth(std::vector<BuildPrimitive> primitives) {
-    const BinaryTree tree = build_binary_tree(primitives);
+    const BinaryTree tree = build_binary_tree(std::move(primitives), {});
     return depth_of(tree, tree.root);
 }
 

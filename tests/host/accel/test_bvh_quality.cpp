@@ -5,6 +5,7 @@
 
 #include "engine/accel/binary_tree.h"
 #include "engine/accel/bvh.h"
+#include "engine/accel/cost_model.h"
 #include "engine/accel/wide_collapse.h"
 #include "tests/host/accel/boxes.h"
 #include "tests/host/accel/tree_walk.h"
@@ -15,15 +16,24 @@ using namespace sahl::test;
 namespace {
 
 // The tree to beat: halves by centroid along the longest axis.
-std::uint32_t split_by_median(std::vector<BuildPrimitive>& primitives, BinaryTree& tree, std::size_t begin,
-                              std::size_t end) {
-    const auto first = primitives.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = primitives.begin() + static_cast<std::ptrdiff_t>(end);
+struct MedianTree {
+    BinaryTree tree;
+
+    PlannedNode split(std::size_t begin, std::size_t end, std::uint32_t& node);
+};
+
+PlannedNode MedianTree::split(std::size_t begin, std::size_t end, std::uint32_t& node) {
+    const auto first = tree.references.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = tree.references.begin() + static_cast<std::ptrdiff_t>(end);
     const bool one_kind = std::all_of(first, last, [&](const auto& p) { return p.kind == first->kind; });
     const std::size_t most = first->kind == SAHL_KIND_INSTANCE ? 1 : 4;
-    if (end - begin <= most && one_kind) return binary_leaf;
     Bounds bounds = empty_bounds();
     for (auto p = first; p != last; ++p) extend(bounds, p->bounds);
+    const float area = static_cast<float>(half_area(bounds));
+    if (end - begin <= most && one_kind) {
+        node = binary_leaf | static_cast<std::uint32_t>(end - begin);
+        return {leaf_costs(area * static_cast<float>(block_costs[first->kind]) / 2), 0};
+    }
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
         if (bounds.hi[k] - bounds.lo[k] > bounds.hi[axis] - bounds.lo[axis]) axis = k;
@@ -32,18 +42,21 @@ std::uint32_t split_by_median(std::vector<BuildPrimitive>& primitives, BinaryTre
         return a.bounds.lo[axis] + a.bounds.hi[axis] < b.bounds.lo[axis] + b.bounds.hi[axis];
     });
     const std::size_t middle = (begin + end) / 2;
-    tree.nodes[middle].bounds = bounds;
-    tree.nodes[middle].left = split_by_median(primitives, tree, begin, middle);
-    tree.nodes[middle].right = split_by_median(primitives, tree, middle, end);
-    return static_cast<std::uint32_t>(middle);
+    node = static_cast<std::uint32_t>(middle);
+    std::uint32_t left = 0, right = 0;
+    const ForestCosts left_costs = split(begin, middle, left).costs;
+    const PlannedNode planned = plan_node(area, left_costs, split(middle, end, right).costs);
+    tree.nodes[middle] = {bounds, left, right, planned.plan, {}};
+    return planned;
 }
 
-double median_tree_cost(std::vector<BuildPrimitive> primitives) {
-    BinaryTree tree;
-    tree.nodes = std::make_unique<BinaryNode[]>(primitives.size());
-    tree.root = split_by_median(primitives, tree, 0, primitives.size());
+double median_tree_cost(const std::vector<BuildPrimitive>& primitives) {
+    MedianTree median;
+    median.tree.references = primitives;
+    median.tree.nodes = std::make_unique<BinaryNode[]>(primitives.size());
+    median.split(0, primitives.size(), median.tree.root);
     Bvh bvh;
-    collapse(tree, primitives, bvh);
+    collapse(median.tree, bvh);
     bvh.bounds = empty_bounds();
     for (const BuildPrimitive& primitive : primitives) extend(bvh.bounds, primitive.bounds);
     const TreeFacts facts = walk(bvh, primitives);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace sahl::test {
 
@@ -14,6 +15,13 @@ constexpr std::uint32_t instance = 8;
 
 bool same(const Bounds& a, const Bounds& b) {
     return std::equal(a.lo, a.lo + 3, b.lo) && std::equal(a.hi, a.hi + 3, b.hi);
+}
+
+bool within(const Bounds& box, const Bounds& outer) {
+    for (int k = 0; k < 3; ++k) {
+        if (box.lo[k] < outer.lo[k] || box.hi[k] > outer.hi[k]) return false;
+    }
+    return true;
 }
 
 double area(const Bounds& box) {
@@ -39,8 +47,9 @@ struct Below {
 
 struct Walk {
     const Bvh& bvh;
+    bool parts;  // whether leaves may hold parts of primitives
     std::vector<const BuildPrimitive*> by_id;
-    std::vector<int> seen;
+    std::vector<std::vector<Bounds>> seen;  // the boxes of leaves, by id
     std::size_t next_node = 0;
     std::size_t next_leaf = 0;
     std::uint32_t next_line = 0;
@@ -49,11 +58,11 @@ struct Walk {
     void fault(const std::string& text) {
         if (facts.fault.empty()) facts.fault = text;
     }
-    Below leaf(std::uint32_t reference);
+    Below leaf(std::uint32_t reference, const Bounds& box);
     Below node(std::uint32_t index, int level);
 };
 
-Below Walk::leaf(std::uint32_t reference) {
+Below Walk::leaf(std::uint32_t reference, const Bounds& box) {
     Below below;
     const std::size_t k = next_leaf++;
     if (k >= bvh.leaves.size()) {
@@ -75,9 +84,14 @@ Below Walk::leaf(std::uint32_t reference) {
             fault("unknown id " + std::to_string(id));
             continue;
         }
-        ++seen[id];
+        seen[id].push_back(box);
         if (by_id[id]->kind != kind) fault("primitive " + std::to_string(id) + " in a leaf of another kind");
         grow(below.bounds, by_id[id]->bounds);
+    }
+    if (parts) {
+        if (!within(box, below.bounds))
+            fault("leaf " + std::to_string(k) + ": a box that is larger than its parts");
+        below.bounds = box;
     }
     below.area_sum = weight_of[std::min(kind, instance)] * area(below.bounds);
     below.box_sum = weight_of[std::min(kind, instance)];
@@ -103,7 +117,7 @@ Below Walk::node(std::uint32_t index, int level) {
         }
         ++children;
         const bool is_leaf = (node.child[s] & 0x80000000u) != 0;
-        const Below child = is_leaf ? leaf(node.child[s]) : this->node(node.child[s], level + 1);
+        const Below child = is_leaf ? leaf(node.child[s], box) : this->node(node.child[s], level + 1);
         if (!same(box, child.bounds))
             fault("node " + std::to_string(index) + ": a box that is not what it holds");
         grow(below.bounds, child.bounds);
@@ -118,18 +132,46 @@ Below Walk::node(std::uint32_t index, int level) {
     return below;
 }
 
-}  // namespace
+// Whether a grid of points on the triangle is in the boxes, but for the points' own rounding.
+bool cover(const std::vector<Bounds>& boxes, const float* corners) {
+    constexpr int steps = 24;
+    for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; i + j <= steps; ++j) {
+            double point[3];
+            double slack[3];
+            for (int k = 0; k < 3; ++k) {
+                const double a{corners[k]}, b{corners[3 + k]}, c{corners[6 + k]};
+                point[k] = a + (b - a) * i / steps + (c - a) * j / steps;
+                slack[k] = 1e-15 * (std::abs(a) + std::abs(b) + std::abs(c));
+            }
+            const bool covered = std::any_of(boxes.begin(), boxes.end(), [&](const Bounds& box) {
+                for (int k = 0; k < 3; ++k) {
+                    if (point[k] < double{box.lo[k]} - slack[k] || point[k] > double{box.hi[k]} + slack[k]) {
+                        return false;
+                    }
+                }
+                return true;
+            });
+            if (!covered) return false;
+        }
+    }
+    return true;
+}
 
-TreeFacts walk(const Bvh& bvh, const std::vector<BuildPrimitive>& primitives) {
-    Walk walk{bvh, {}, {}, 0, 0, 0, {}};
+// What is to be found out about a primitive's leaves.
+using CheckLeaves = std::function<bool(const BuildPrimitive&, const std::vector<Bounds>&)>;
+
+TreeFacts walk(const Bvh& bvh, const std::vector<BuildPrimitive>& primitives, bool parts,
+               const CheckLeaves& are_right) {
+    Walk walk{bvh, parts, {}, {}, 0, 0, 0, {}};
     walk.by_id.resize(primitives.size());
     walk.seen.resize(primitives.size());
     for (const BuildPrimitive& primitive : primitives) walk.by_id[primitive.id] = &primitive;
     const Below root = walk.node(0, 1);
     for (std::size_t id = 0; id < primitives.size(); ++id) {
-        if (walk.seen[id] != 1) {
-            walk.fault("primitive " + std::to_string(id) + " is in " + std::to_string(walk.seen[id]) +
-                       " leaves");
+        if (!are_right(*walk.by_id[id], walk.seen[id])) {
+            walk.fault("primitive " + std::to_string(id) + " is in " + std::to_string(walk.seen[id].size()) +
+                       " leaves that do not hold it");
         }
     }
     if (walk.next_node != bvh.nodes.size()) walk.fault("nodes that nothing refers to");
@@ -140,6 +182,20 @@ TreeFacts walk(const Bvh& bvh, const std::vector<BuildPrimitive>& primitives) {
     const bool flat = primitives.empty() || area(root.bounds) == 0;
     walk.facts.sah_cost = flat ? root.box_sum : root.area_sum / area(root.bounds);
     return walk.facts;
+}
+
+}  // namespace
+
+TreeFacts walk(const Bvh& bvh, const std::vector<BuildPrimitive>& primitives) {
+    return walk(bvh, primitives, false,
+                [](const BuildPrimitive&, const std::vector<Bounds>& boxes) { return boxes.size() == 1; });
+}
+
+TreeFacts walk_parts(const Bvh& bvh, const TriangleSet& set) {
+    return walk(bvh, set.primitives, true, [&](const BuildPrimitive& p, const std::vector<Bounds>& boxes) {
+        if (p.kind == SAHL_KIND_TRIANGLE) return cover(boxes, set.corners().of(p.id));
+        return boxes.size() == 1 && within(p.bounds, boxes[0]);
+    });
 }
 
 }  // namespace sahl::test

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/accel/bvh.h"
+#include "tests/host/accel/triangles.h"
 
 namespace sahl::test {
 
@@ -19,5 +20,10 @@ struct TreeFacts {
 /// `fault` tells of primitives missing or doubled, boxes that are not exactly the box of what is
 /// below, wrong order of nodes or leaves, wrong references, leaves too large or of several kinds.
 TreeFacts walk(const Bvh& bvh, const std::vector<BuildPrimitive>& primitives);
+
+/// The same of a tree in which triangles may be cut: leaves' boxes lie within those of what they hold, each
+/// point of a grid on each triangle is in the box of a leaf that has it, and all other primitives are in one
+/// leaf, which contains them.
+TreeFacts walk_parts(const Bvh& bvh, const TriangleSet& set);
 
 }  // namespace sahl::test
