@@ -15,7 +15,7 @@ struct BenchScene {
     Scene scene;
 };
 
-/// 327,680 triangles of even size: a sphere with deep folds.
+/// 327,680 triangles of about one size: a sphere with folds.
 BenchScene organic_mesh();
 /// 1,280,000 triangles: a height field of mountains.
 BenchScene terrain_mesh();
