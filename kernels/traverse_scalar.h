@@ -10,9 +10,7 @@
 #ifndef SAHL_TRAVERSE_SCALAR_H
 #define SAHL_TRAVERSE_SCALAR_H
 
-#include "kernels/box.h"
 #include "kernels/bvh.h"
-#include "kernels/disc.h"
 #include "kernels/instance.h"
 #include "kernels/polygon.h"
 #include "kernels/quadric.h"

@@ -50,6 +50,16 @@ std::string_view directive_of(std::string_view line) {
     return line.substr(0, line.find_first_of(" \t\"<\r"));
 }
 
+/// An include guard is a first directive #ifndef.
+bool has_guard(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        if (const std::string_view directive = directive_of(line); !directive.empty())
+            return directive == "ifndef";
+    }
+    return false;
+}
+
 /// X of `#include "X"`.
 std::optional<std::string> quoted_include(std::string_view line) {
     if (directive_of(line) != "include") return std::nullopt;
@@ -65,9 +75,10 @@ public:
 
     void add_file(const std::string& name, const std::string& included_from, bool conditional) {
         if (std::find(open_.begin(), open_.end(), name) != open_.end()) return;  // its guard is closed
-        if (!conditional && !once_.insert(name).second) return;
+        const std::string text = read_kernel(name, included_from);
+        if (!conditional && has_guard(text) && !once_.insert(name).second) return;
         open_.push_back(name);
-        add_text(std::string(folder_name) + name, read_kernel(name, included_from), conditional);
+        add_text(std::string(folder_name) + name, text, conditional);
         open_.pop_back();
     }
 

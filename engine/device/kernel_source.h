@@ -18,9 +18,9 @@ struct KernelSource {
 inline constexpr const char* text_name = "text.cl";
 
 /// The files (names below kernels/) one after the other. `#include "kernels/NAME"` puts in NAME's
-/// text: once, or, below a conditional that is not the including file's include guard, each time
-/// (whether that branch is taken is the compiler's business); so every header needs an include
-/// guard. Files come from the folder SAHL_KERNEL_DIR if that is set, else from the library.
+/// text: each time if NAME has no include guard or the line is below a conditional that is not the
+/// including file's own guard (whether that branch is taken is the compiler's business), else once.
+/// Files come from the folder SAHL_KERNEL_DIR if that is set, else from the library.
 /// Throws Error(device) naming a file that is missing and the line that includes it.
 KernelSource expand_files(const std::vector<std::string>& names);
 

@@ -25,16 +25,29 @@ TEST_CASE("includes are expanded once, with the lines of their files") {
     const TemporaryFolder folder;
     const ScopedVariable variable("SAHL_KERNEL_DIR", folder.path().string());
     write_file(folder.path() / "a.h", "#ifndef A\n#define A\n#include \"kernels/b.h\"\nint a;\n#endif\n");
-    write_file(folder.path() / "b.h", "int b;\n");
+    write_file(folder.path() / "b.h", "#ifndef B\nint b;\n#endif\n");
     write_file(folder.path() / "m.cl",
                "#include \"kernels/a.h\"\n  #  include \"kernels/b.h\"  // again\nint m;\n");
     const KernelSource source = expand_files({"m.cl", "b.h"});
     CHECK(source.text ==
           "#line 1 \"kernels/m.cl\"\n#line 1 \"kernels/a.h\"\n#ifndef A\n#define A\n#line 1 "
-          "\"kernels/b.h\"\nint b;\n"
+          "\"kernels/b.h\"\n#ifndef B\nint b;\n#endif\n"
           "#line 4 \"kernels/a.h\"\nint a;\n#endif\n#line 2 \"kernels/m.cl\"\n#line 3 \"kernels/m.cl\"\nint "
           "m;\n");
     CHECK(source.files.size() == 3);
+}
+
+TEST_CASE("files without an include guard are put in each time") {
+    const TemporaryFolder folder;
+    const ScopedVariable variable("SAHL_KERNEL_DIR", folder.path().string());
+    write_file(folder.path() / "body.h", "// For one type.\n#include \"kernels/leaf.h\"\nTYPE x;\n");
+    write_file(folder.path() / "leaf.h", "#ifndef LEAF\n#define LEAF\nint leaf;\n#endif\n");
+    write_file(folder.path() / "m.cl",
+               "#define TYPE int\n#include \"kernels/body.h\"\n#undef TYPE\n#define TYPE float\n"
+               "#include \"kernels/body.h\"\n");
+    const KernelSource source = expand_files({"m.cl"});
+    CHECK(count(source.text, "TYPE x;") == 2);
+    CHECK(count(source.text, "int leaf;") == 1);
 }
 
 TEST_CASE("an include below a conditional does not use up the file") {
