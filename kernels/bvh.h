@@ -20,13 +20,23 @@ typedef struct {
     float extent;  // largest |coordinate| of the scene
 } Bvh;
 
+/// Of three components each. Packed, as the stream kernel's rays compete for the cache.
 typedef struct {
-    float3 inverse;  // 1/direction, finite
-    float3 near_addend;
-    float3 far_addend;
-    uint near_x, near_y, near_z;  // which float8 of a node is the near plane
-    uint octant;
+    float inverse[3];  // 1/direction, finite
+    float near_addend[3];
+    float far_addend[3];
+    uint octant;  // bit k: inverse[k] is negative
 } RayBoxTest;
+
+/// Which float8 of a node's planes the near ones are; the far ones are 3 - x, 5 - y, 7 - z.
+typedef struct {
+    uint x, y, z;
+} NearPlanes;
+
+static inline NearPlanes near_planes(uint octant) {
+    NearPlanes planes = {(octant & 1u) * 3u, 1u + (octant >> 1 & 1u) * 3u, 2u + (octant >> 2) * 3u};
+    return planes;
+}
 
 /// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
 static inline float finite_inverse(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
@@ -36,48 +46,97 @@ static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float ext
     float3 r =
         (float3)(finite_inverse(direction.x), finite_inverse(direction.y), finite_inverse(direction.z));
     float3 e = (fabs(origin) + extent) * 0x1p-20f * fabs(r);
-    test.inverse = r;
-    test.near_addend = -(origin * r) - e;
-    test.far_addend = -(origin * r) + e;
-    test.near_x = r.x < 0.0f ? 3u : 0u;
-    test.near_y = r.y < 0.0f ? 4u : 1u;
-    test.near_z = r.z < 0.0f ? 5u : 2u;
+    float3 near = -(origin * r) - e, far = -(origin * r) + e;
+    vstore3(r, 0, test.inverse);
+    vstore3(near, 0, test.near_addend);
+    vstore3(far, 0, test.far_addend);
     test.octant = (r.x < 0.0f ? 1u : 0u) | (r.y < 0.0f ? 2u : 0u) | (r.z < 0.0f ? 4u : 0u);
     return test;
 }
 
-/// The children whose boxes the ray meets between t_min and t_max; *entry: where it enters each.
-static inline uint intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min,
-                                      float t_max, float8* entry) {
+/// Where between t_min and t_max the ray enters and leaves the boxes of the children; it meets those for which
+/// *enter <= *leave.
+static inline void intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min,
+                                      float t_max, float8* enter, float8* leave) {
     const global float* planes = (const global float*)node;
-    float3 r = test->inverse, n = test->near_addend, f = test->far_addend;
-    float8 near_x = fma(vload8(test->near_x, planes), (float8)(r.x), (float8)(n.x));
-    float8 near_y = fma(vload8(test->near_y, planes), (float8)(r.y), (float8)(n.y));
-    float8 near_z = fma(vload8(test->near_z, planes), (float8)(r.z), (float8)(n.z));
-    float8 far_x = fma(vload8(3u - test->near_x, planes), (float8)(r.x), (float8)(f.x));
-    float8 far_y = fma(vload8(5u - test->near_y, planes), (float8)(r.y), (float8)(f.y));
-    float8 far_z = fma(vload8(7u - test->near_z, planes), (float8)(r.z), (float8)(f.z));
+    const NearPlanes near = near_planes(test->octant);
+    const float* r = test->inverse;
+    const float* n = test->near_addend;
+    const float* f = test->far_addend;
+    float8 near_x = fma(vload8(near.x, planes), (float8)(r[0]), (float8)(n[0]));
+    float8 near_y = fma(vload8(near.y, planes), (float8)(r[1]), (float8)(n[1]));
+    float8 near_z = fma(vload8(near.z, planes), (float8)(r[2]), (float8)(n[2]));
+    float8 far_x = fma(vload8(3u - near.x, planes), (float8)(r[0]), (float8)(f[0]));
+    float8 far_y = fma(vload8(5u - near.y, planes), (float8)(r[1]), (float8)(f[1]));
+    float8 far_z = fma(vload8(7u - near.z, planes), (float8)(r[2]), (float8)(f[2]));
     // No NaN comes here: rays are finite, r is finite and not 0, planes are finite or infinite.
-    float8 enter = SAHL_MAX(SAHL_MAX(near_x, near_y), SAHL_MAX(near_z, (float8)(t_min)));
-    float8 leave = SAHL_MIN(SAHL_MIN(far_x, far_y), SAHL_MIN(far_z, (float8)(t_max)));
-    *entry = enter;
-    return mask8_le(enter, leave);
+    *enter = SAHL_MAX(SAHL_MAX(near_x, near_y), SAHL_MAX(near_z, (float8)(t_min)));
+    *leave = SAHL_MIN(SAHL_MIN(far_x, far_y), SAHL_MIN(far_z, (float8)(t_max)));
+}
+
+/// Puts the children that are met (enter <= leave) on a stack of `size` entries, the one to visit first on
+/// top, with where the ray enters each. Writes eight entries behind `size`, however many are met. Returns the
+/// new size.
+static inline uint push_children(const global BvhNode* node, float8 enter, float8 leave, uint octant,
+                                 uint* children, float* entries, uint size) {
+#ifdef SAHL_AVX512
+    // Last to first.
+    const int8 slots = (int8)(7, 6, 5, 4, 3, 2, 1, 0) ^ (int8)((int)octant);
+    enter = __builtin_ia32_permvarsf256(enter, slots);
+    leave = __builtin_ia32_permvarsf256(leave, slots);
+    int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
+    uchar met = (uchar)mask8_le(enter, leave);
+    vstore8(as_uint8(__builtin_ia32_compresssi256_mask(child, (int8)(0), met)), 0, children + size);
+    vstore8(__builtin_ia32_compresssf256_mask(enter, (float8)(0.0f), met), 0, entries + size);
+    return size + popcount((uint)met);
+#else
+    uint order = permute_by_octant(mask8_le(enter, leave), octant);
+    while (order != 0u) {
+        uint position = highest_lane(order);
+        order ^= 1u << position;
+        uint slot = position ^ octant;
+        children[size] = node->child[slot];
+        entries[size] = ((float*)&enter)[slot];
+        ++size;
+    }
+    return size;
+#endif
 }
 
 /// `t` within the box lo..hi; NaN becomes where the ray enters it. The planes go through the same
 /// arithmetic as a node's, and fma is monotonic, so the result lies within every box around this
 /// one: a flat primitive whose distance is kept to its own box is never culled wrongly, however
 /// badly a grazing ray has defined that distance.
-static inline float keep_to_box(float t, float3 lo, float3 hi, const RayBoxTest* test) {
-    bool forward_x = test->near_x == 0u, forward_y = test->near_y == 1u, forward_z = test->near_z == 2u;
-    float3 entry_planes = (float3)(forward_x ? lo.x : hi.x, forward_y ? lo.y : hi.y, forward_z ? lo.z : hi.z);
-    float3 exit_planes = (float3)(forward_x ? hi.x : lo.x, forward_y ? hi.y : lo.y, forward_z ? hi.z : lo.z);
-    float3 enter = fma(entry_planes, test->inverse, test->near_addend);
-    float3 leave = fma(exit_planes, test->inverse, test->far_addend);
-    float nearest = SAHL_MAX(SAHL_MAX(enter.x, enter.y), enter.z);
-    float farthest = SAHL_MIN(SAHL_MIN(leave.x, leave.y), leave.z);
-    t = t > nearest ? t : nearest;
-    return t < farthest ? t : farthest;
-}
+#define SAHL_DEFINE_KEEP_TO_BOX(FLOAT)                                                                     \
+    SAHL_OVERLOAD FLOAT keep_to_box(FLOAT t, const FLOAT* lo, const FLOAT* hi, const RayBoxTest* test) {   \
+        const float* r = test->inverse;                                                                    \
+        const float* n = test->near_addend;                                                                \
+        const float* f = test->far_addend;                                                                 \
+        FLOAT near_x = lo[0], far_x = hi[0], near_y = lo[1], far_y = hi[1], near_z = lo[2], far_z = hi[2]; \
+        if (test->octant & 1u) {                                                                           \
+            near_x = hi[0];                                                                                \
+            far_x = lo[0];                                                                                 \
+        }                                                                                                  \
+        if (test->octant & 2u) {                                                                           \
+            near_y = hi[1];                                                                                \
+            far_y = lo[1];                                                                                 \
+        }                                                                                                  \
+        if (test->octant & 4u) {                                                                           \
+            near_z = hi[2];                                                                                \
+            far_z = lo[2];                                                                                 \
+        }                                                                                                  \
+        FLOAT enter_x = fma(near_x, (FLOAT)(r[0]), (FLOAT)(n[0]));                                         \
+        FLOAT enter_y = fma(near_y, (FLOAT)(r[1]), (FLOAT)(n[1]));                                         \
+        FLOAT enter_z = fma(near_z, (FLOAT)(r[2]), (FLOAT)(n[2]));                                         \
+        FLOAT leave_x = fma(far_x, (FLOAT)(r[0]), (FLOAT)(f[0]));                                          \
+        FLOAT leave_y = fma(far_y, (FLOAT)(r[1]), (FLOAT)(f[1]));                                          \
+        FLOAT leave_z = fma(far_z, (FLOAT)(r[2]), (FLOAT)(f[2]));                                          \
+        FLOAT nearest = SAHL_MAX(SAHL_MAX(enter_x, enter_y), enter_z);                                     \
+        FLOAT farthest = SAHL_MIN(SAHL_MIN(leave_x, leave_y), leave_z);                                    \
+        t = t > nearest ? t : nearest;                                                                     \
+        return t < farthest ? t : farthest;                                                                \
+    }
+SAHL_DEFINE_KEEP_TO_BOX(float)
+SAHL_DEFINE_KEEP_TO_BOX(float4)
 
 #endif

@@ -35,15 +35,10 @@ static inline bool is_nonzero(float3 v) { return v.x != 0.0f || v.y != 0.0f || v
 static inline float3 load3(const global float* p) { return (float3)(p[0], p[1], p[2]); }
 
 /// a·b - c·d to within 1.5 ulp whatever cancels (Jeannerod, Louvet, Muller 2013).
-static inline float difference_of_products(float a, float b, float c, float d) {
-    float cd = c * d;
-    float error = fma(-c, d, cd);
+static inline float4 difference_of_products(float4 a, float4 b, float4 c, float4 d) {
+    float4 cd = c * d;
+    float4 error = fma(-c, d, cd);
     return fma(a, b, -cd) + error;
-}
-
-static inline float3 accurate_cross3(float3 a, float3 b) {
-    return (float3)(difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
-                    difference_of_products(a.x, b.y, a.y, b.x));
 }
 
 /// log2 of a normal x > 0, relative error below 3e-7: the mantissa is brought to

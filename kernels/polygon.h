@@ -20,17 +20,17 @@ static inline float2 sheared_vertex(float3 vertex, const RayShear* shear) {
 
 /// Whether the ray passes through the polygon or exactly through its outline; *lo, *hi: its box.
 static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear,
-                                    float3* lo, float3* hi) {
+                                    float* lo, float* hi) {
     bool inside = false, on_outline = false;
     float3 last = load3(vertices + 3u * (count - 1u));
     float2 a = sheared_vertex(last, shear);
-    *lo = last;
-    *hi = last;
+    vstore3(last, 0, lo);
+    vstore3(last, 0, hi);
     for (uint i = 0; i < count; ++i) {
         float3 vertex = load3(vertices + 3u * i);
         float2 b = sheared_vertex(vertex, shear);
-        *lo = min3(*lo, vertex);
-        *hi = max3(*hi, vertex);
+        vstore3(min3(vload3(0, lo), vertex), 0, lo);
+        vstore3(max3(vload3(0, hi), vertex), 0, hi);
         float edge = a.x * b.y - a.y * b.x;
         bool spans = SAHL_MIN(a.x, b.x) <= 0.0f && SAHL_MAX(a.x, b.x) >= 0.0f && SAHL_MIN(a.y, b.y) <= 0.0f &&
                      SAHL_MAX(a.y, b.y) >= 0.0f;
@@ -61,9 +61,9 @@ static inline void intersect_polygons(const global PolygonBlock* block, const gl
         lanes &= lanes - 1u;
         uint id = block->id[lane];
         const global float* vertices = polygon_vertices + 3u * block->first_vertex[lane];
-        float3 lo, hi;
+        float lo[3], hi[3];
         if ((id & SAHL_ID_MASK) != ray->exclude && is_seen_from(id, ((float*)&nd)[lane] <= 0.0f) &&
-            polygon_contains(vertices, block->vertex_count[lane], shear, &lo, &hi)) {
+            polygon_contains(vertices, block->vertex_count[lane], shear, lo, hi)) {
             offer_hit(state, keep_to_box(((float*)&t)[lane], lo, hi, boxes), 0.0f, 0.0f, id, any_hit);
         }
     }

@@ -1,29 +1,82 @@
-// Comparison masks as integers: AVX-512, AVX2 and plain OpenCL behind one set of names.
-// Bit k of a mask is lane k; comparisons with NaN are false. SAHL_PLAIN_OPENCL forces the plain
-// version, which other CPUs and GPUs use; SAHL_NO_AVX512 that of AVX2 where it is to be had.
+// The few idioms that OpenCL C has no fast words for: AVX-512, AVX2 and plain OpenCL behind one set
+// of names. SAHL_PLAIN_OPENCL forces the plain version, which other CPUs and GPUs use;
+// SAHL_NO_AVX512 that of AVX2 where it is to be had.
+//
+// Two kinds of masks: bits of a uint (bit k is lane k) where lanes are looked at one by one, and
+// Lanes16 where sixteen rays go together: bits on AVX-512, whole lanes elsewhere. Comparisons with
+// NaN are false.
 #ifndef SAHL_SIMD_H
 #define SAHL_SIMD_H
 
 #include "kernels/math.h"
 
-#if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(SAHL_NO_AVX512) && !defined(SAHL_PLAIN_OPENCL)
+#define SAHL_OVERLOAD static inline __attribute__((overloadable))
+#define SAHL_INLINE static inline __attribute__((always_inline))
 
-// The immediate is the predicate of vcmpps: 2 is <=, 13 is >=, ordered.
-#define SAHL_LE_OS 2
-#define SAHL_GE_OS 13
+#if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(SAHL_NO_AVX512) && !defined(SAHL_PLAIN_OPENCL)
+#define SAHL_AVX512
+#elif defined(__AVX2__) && !defined(SAHL_PLAIN_OPENCL)
+#define SAHL_AVX2
+#endif
+
+/// The lowest set bit's number; `mask` is not 0.
+static inline uint lowest_lane(uint mask) { return (uint)__builtin_ctz(mask); }
+
+/// The highest set bit's number; `mask` is not 0.
+static inline uint highest_lane(uint mask) { return 31u - clz(mask); }
+
+/// Moves bit s of an 8-bit mask to bit s ^ octant.
+static inline uint permute_by_octant(uint mask, uint octant) {
+    mask = (octant & 1u) ? ((mask & 0x55u) << 1 | (mask >> 1 & 0x55u)) : mask;
+    mask = (octant & 2u) ? ((mask & 0x33u) << 2 | (mask >> 2 & 0x33u)) : mask;
+    return (octant & 4u) ? ((mask & 0x0fu) << 4 | mask >> 4) : mask;
+}
+
+/// Lanes of a float4 comparison.
+static inline uint mask4(int4 lanes) {
+#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
+    return (uint)__builtin_ia32_movmskps(as_float4(lanes));
+#else
+    int4 bits = lanes & (int4)(1, 2, 4, 8);
+    return (uint)(bits.x | bits.y | bits.z | bits.w);
+#endif
+}
+
+#ifdef SAHL_AVX512
+
+// The immediates are predicates of vcmpps, ordered where that is a choice.
+#define SAHL_COMPARE16(a, b, predicate) \
+    ((Lanes16)__builtin_ia32_cmpps512_mask(a, b, predicate, (ushort)0xffff, 4))
+typedef ushort Lanes16;
+SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 0); }
+SAHL_OVERLOAD Lanes16 less16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 1); }
+SAHL_OVERLOAD Lanes16 less_equal16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 2); }
+SAHL_OVERLOAD Lanes16 equal16(int16 a, int16 b) {
+    return (Lanes16)__builtin_ia32_cmpd512_mask(a, b, 0, (ushort)0xffff);
+}
+SAHL_OVERLOAD Lanes16 less16(int16 a, int16 b) {
+    return (Lanes16)__builtin_ia32_cmpd512_mask(a, b, 1, (ushort)0xffff);
+}
+SAHL_OVERLOAD float16 select16(Lanes16 lanes, float16 a, float16 b) {
+    return __builtin_ia32_selectps_512(lanes, a, b);
+}
+SAHL_OVERLOAD int16 select16(Lanes16 lanes, int16 a, int16 b) {
+    return __builtin_ia32_selectd_512(lanes, a, b);
+}
+static inline bool any16(Lanes16 lanes) { return lanes != 0; }
+static inline uint bits16(Lanes16 lanes) { return lanes; }
+static inline Lanes16 lanes16(uint bits) { return (Lanes16)bits; }
+static inline Lanes16 not16(Lanes16 lanes) { return (Lanes16)~lanes; }
+
 static inline uint mask8_le(float8 a, float8 b) {
-    return __builtin_ia32_cmpps256_mask(a, b, SAHL_LE_OS, (uchar)0xff);
+    return __builtin_ia32_cmpps256_mask(a, b, 2, (uchar)0xff);
 }
-static inline uint mask16_le(float16 a, float16 b) {
-    return __builtin_ia32_cmpps512_mask(a, b, SAHL_LE_OS, (ushort)0xffff, 4);
-}
-static inline uint mask16_ge(float16 a, float16 b) {
-    return __builtin_ia32_cmpps512_mask(a, b, SAHL_GE_OS, (ushort)0xffff, 4);
-}
+static inline uint mask16_le(float16 a, float16 b) { return less_equal16(a, b); }
+static inline uint mask16_ge(float16 a, float16 b) { return less_equal16(b, a); }
 
 #else
 
-#if defined(__AVX2__) && !defined(SAHL_PLAIN_OPENCL)
+#ifdef SAHL_AVX2
 static inline uint sign_bits8(int8 lanes) { return (uint)__builtin_ia32_movmskps256(as_float8(lanes)); }
 #else
 static inline uint sign_bits8(int8 lanes) {
@@ -34,33 +87,50 @@ static inline uint sign_bits8(int8 lanes) {
 }
 #endif
 
+typedef int16 Lanes16;
+SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return a == b; }
+SAHL_OVERLOAD Lanes16 less16(float16 a, float16 b) { return a < b; }
+SAHL_OVERLOAD Lanes16 less_equal16(float16 a, float16 b) { return a <= b; }
+SAHL_OVERLOAD Lanes16 equal16(int16 a, int16 b) { return a == b; }
+SAHL_OVERLOAD Lanes16 less16(int16 a, int16 b) { return a < b; }
+SAHL_OVERLOAD float16 select16(Lanes16 lanes, float16 a, float16 b) { return select(b, a, lanes); }
+SAHL_OVERLOAD int16 select16(Lanes16 lanes, int16 a, int16 b) { return select(b, a, lanes); }
+static inline bool any16(Lanes16 lanes) { return sign_bits8(lanes.lo | lanes.hi) != 0u; }
+static inline uint bits16(Lanes16 lanes) { return sign_bits8(lanes.lo) | sign_bits8(lanes.hi) << 8; }
+static inline Lanes16 lanes16(uint bits) {
+    const int16 bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
+    return ((int16)((int)bits) & bit) != 0;
+}
+static inline Lanes16 not16(Lanes16 lanes) { return ~lanes; }
+
 static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
-static inline uint mask16_le(float16 a, float16 b) {
-    return sign_bits8(a.lo <= b.lo) | sign_bits8(a.hi <= b.hi) << 8;
-}
-static inline uint mask16_ge(float16 a, float16 b) {
-    return sign_bits8(a.lo >= b.lo) | sign_bits8(a.hi >= b.hi) << 8;
-}
+static inline uint mask16_le(float16 a, float16 b) { return bits16(a <= b); }
+static inline uint mask16_ge(float16 a, float16 b) { return bits16(a >= b); }
 
 #endif
 
-/// Lanes of a float4 comparison.
-static inline uint mask4(int4 lanes) {
-    int4 bits = lanes & (int4)(1, 2, 4, 8);
-    return (uint)(bits.x | bits.y | bits.z | bits.w);
+static inline float least16(float16 v) {
+    float8 a = SAHL_MIN(v.lo, v.hi);
+    float4 b = SAHL_MIN(a.lo, a.hi);
+    float2 c = SAHL_MIN(b.lo, b.hi);
+    return SAHL_MIN(c.x, c.y);
 }
 
-/// The lowest set bit's number; `mask` is not 0.
-static inline uint lowest_lane(uint mask) { return 31u - clz(mask & (0u - mask)); }
+static inline float greatest16(float16 v) {
+    float8 a = SAHL_MAX(v.lo, v.hi);
+    float4 b = SAHL_MAX(a.lo, a.hi);
+    float2 c = SAHL_MAX(b.lo, b.hi);
+    return SAHL_MAX(c.x, c.y);
+}
 
-/// The highest set bit's number; `mask` is not 0.
-static inline uint highest_lane(uint mask) { return 31u - clz(mask); }
-
-/// Moves bit s of an 8-bit mask to bit s ^ octant.
-static inline uint permute_by_octant(uint mask, uint octant) {
-    mask = (octant & 1u) ? ((mask & 0x55u) << 1 | (mask >> 1 & 0x55u)) : mask;
-    mask = (octant & 2u) ? ((mask & 0x33u) << 2 | (mask >> 2 & 0x33u)) : mask;
-    return (octant & 4u) ? ((mask & 0x0fu) << 4 | mask >> 4) : mask;
+/// Asks for `lines` cache lines from `p` on.
+static inline void prefetch_lines(const global void* p, uint lines) {
+#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
+#pragma unroll
+    for (uint line = 0; line < lines; ++line) {
+        __builtin_prefetch((const void*)((ulong)p + 64u * line));
+    }
+#endif
 }
 
 #endif

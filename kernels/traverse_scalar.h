@@ -23,14 +23,24 @@
 
 static inline uint child_kind(uint child) { return child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK; }
 
+static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
+    return bvh->leaves + (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
+}
+
+static inline void prefetch_child(const Bvh* bvh, uint child) {
+    prefetch_lines(child & SAHL_CHILD_LEAF ? (const global void*)leaf_block(bvh, child)
+                                           : (const global void*)(bvh->nodes + child),
+                   4u);
+}
+
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
                                   const RayBoxTest* boxes, HitState* state, bool any_hit) {
-    ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
-    const global uchar* block = bvh->leaves + offset;
+    const global uchar* block = leaf_block(bvh, child);
+    if (__builtin_expect(child_kind(child) == SAHL_KIND_TRIANGLE, 1)) {
+        intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
+        return;
+    }
     switch (child_kind(child)) {
-        case SAHL_KIND_TRIANGLE:
-            intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
-            break;
         case SAHL_KIND_SPHERE:
             intersect_spheres((const global SphereBlock*)block, ray, state, any_hit);
             break;
@@ -64,7 +74,7 @@ typedef struct {
 } TracedRay;
 
 /// `exclude` is left out only where `instance` is the one that the ray starts on.
-static inline TracedRay traced_ray(float3 origin, float3 direction, const Ray* ray, uint instance,
+SAHL_INLINE TracedRay traced_ray(float3 origin, float3 direction, const Ray* ray, uint instance,
                                    float extent) {
     TracedRay traced;
     traced.ray.origin = origin;
@@ -84,13 +94,17 @@ static inline TracedRay traced_in_instance(const Bvh* bvh, const Ray* ray, uint 
                       instance->extent);
 }
 
+/// Whether the ray is finite and has a direction.
+static inline bool can_meet_anything(const Ray* ray) {
+    return max_abs3(ray->direction) > 0.0f && isfinite(dot3(ray->direction, (float3)(1.0f))) &&
+           isfinite(dot3(ray->origin, (float3)(1.0f)));
+}
+
 /// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of
 /// surface there are (it stops at an opaque one). Rays that are not finite or have no direction
 /// meet nothing.
 static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool any_hit) {
-    float magnitude = max_abs3(ray->direction);
-    if (!(magnitude > 0.0f) || !isfinite(dot3(ray->direction, (float3)(1.0f))) ||
-        !isfinite(dot3(ray->origin, (float3)(1.0f)))) {
+    if (!can_meet_anything(ray)) {
         return;
     }
     const TracedRay in_world = traced_ray(ray->origin, ray->direction, ray, SAHL_WORLD, bvh->extent);
@@ -118,17 +132,9 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
             cull_t = state->t * SAHL_CULL_SLACK;
         } else {
             const global BvhNode* node = bvh->nodes + current;
-            float8 entry;
-            uint hit = intersect_children(node, &here.boxes, state->t_min, cull_t, &entry);
-            uint order = permute_by_octant(hit, here.boxes.octant);
-            while (order != 0u) {
-                uint position = highest_lane(order);
-                order ^= 1u << position;
-                uint slot = position ^ here.boxes.octant;
-                waiting[size] = node->child[slot];
-                entries[size] = ((float*)&entry)[slot];
-                ++size;
-            }
+            float8 enter, leave;
+            intersect_children(node, &here.boxes, state->t_min, cull_t, &enter, &leave);
+            size = push_children(node, enter, leave, here.boxes.octant, waiting, entries, size);
         }
         do {
             if (state->inside_of != SAHL_WORLD && size == world_size) {

@@ -38,6 +38,31 @@ static inline RayShear ray_shear(float3 origin, float3 direction) {
     return shear;
 }
 
+/// Four triangles: the normals of their planes, from raw vertex differences and compensated, so that
+/// slivers do as well as others, and their boxes.
+typedef struct {
+    float4 normal[3];
+    float4 lo[3], hi[3];
+} TrianglePlanes;
+
+static inline TrianglePlanes triangle_planes(const global TriangleBlock* block) {
+    TrianglePlanes planes;
+    float4 e1[3], e2[3];
+#pragma unroll
+    for (uint k = 0; k < 3u; ++k) {
+        const global float* axis = (const global float*)block + 16u * k;
+        float4 a = vload4(0, axis), b = vload4(1, axis), c = vload4(2, axis);
+        e1[k] = b - a;
+        e2[k] = c - a;
+        planes.lo[k] = SAHL_MIN(SAHL_MIN(a, b), c);
+        planes.hi[k] = SAHL_MAX(SAHL_MAX(a, b), c);
+    }
+    planes.normal[0] = difference_of_products(e1[1], e2[2], e1[2], e2[1]);
+    planes.normal[1] = difference_of_products(e1[2], e2[0], e1[0], e2[2]);
+    planes.normal[2] = difference_of_products(e1[0], e2[1], e1[1], e2[0]);
+    return planes;
+}
+
 static inline void intersect_triangles(const global TriangleBlock* block, const Ray* ray,
                                        const RayShear* shear, const RayBoxTest* boxes, HitState* state,
                                        bool any_hit) {
@@ -48,41 +73,39 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
 
     // Groups of four lanes: w = e(v0, v1), u = e(v1, v2), v = e(v2, v0); the last group is junk.
     float16 edges = x.s456789ab0123cdef * y - y.s456789ab0123cdef * x;
-    uint positive = mask16_ge(edges, (float16)(0.0f));
-    uint negative = mask16_le(edges, (float16)(0.0f));
-    uint lanes =
-        ((positive & positive >> 4 & positive >> 8) | (negative & negative >> 4 & negative >> 8)) & 15u;
+    // Both signs in one word.
+    uint seen = mask16_ge(edges, (float16)(0.0f)) | mask16_le(edges, (float16)(0.0f)) << 16;
+    seen &= seen >> 4 & seen >> 8;
+    uint lanes = (seen | seen >> 16) & 15u;
     if (lanes == 0u) {
         return;
     }
+    TrianglePlanes planes = triangle_planes(block);
+    float3 d = ray->direction, o = ray->origin;
+    float4 nd = planes.normal[0] * d.x + planes.normal[1] * d.y + planes.normal[2] * d.z;
+    float4 t = (planes.normal[0] * (vload4(0, block->x) - o.x) + planes.normal[1] * (vload4(0, block->y) - o.y) +
+                planes.normal[2] * (vload4(0, block->z) - o.z)) /
+               nd;
+    t = keep_to_box(t, planes.lo, planes.hi, boxes);
+    lanes &= mask4((t >= state->t_min) & (t <= state->t));
+    if (lanes == 0u) {
+        return;
+    }
+    uint reach = mask16_ge(x, (float16)(0.0f)) | mask16_ge(y, (float16)(0.0f)) << 16;
+    uint back = mask16_le(x, (float16)(0.0f)) | mask16_le(y, (float16)(0.0f)) << 16;
+    uint extent = (reach | reach >> 4 | reach >> 8) & (back | back >> 4 | back >> 8);
     float4 w = edges.s0123, u = edges.s4567, v = edges.s89ab;
     float4 determinant = (u + v) + w;
-    uint reach_x = mask16_ge(x, (float16)(0.0f)), reach_y = mask16_ge(y, (float16)(0.0f));
-    uint back_x = mask16_le(x, (float16)(0.0f)), back_y = mask16_le(y, (float16)(0.0f));
-    uint extent = (reach_x | reach_x >> 4 | reach_x >> 8) & (back_x | back_x >> 4 | back_x >> 8) &
-                  (reach_y | reach_y >> 4 | reach_y >> 8) & (back_y | back_y >> 4 | back_y >> 8);
-    lanes &= extent & mask4(determinant != 0.0f);
-
+    lanes &= extent & extent >> 16 & mask4(determinant != 0.0f);
     while (lanes != 0u) {
         uint lane = lowest_lane(lanes);
         lanes &= lanes - 1u;
         uint id = block->id[lane];
-        if ((id & SAHL_ID_MASK) == ray->exclude) {
-            continue;
+        if ((id & SAHL_ID_MASK) != ray->exclude && is_seen_from(id, ((float*)&nd)[lane] <= 0.0f)) {
+            float scale = 1.0f / ((float*)&determinant)[lane];
+            offer_hit(state, ((float*)&t)[lane], ((float*)&v)[lane] * scale, ((float*)&w)[lane] * scale, id,
+                      any_hit);
         }
-        float3 v0 = (float3)(block->x[lane], block->y[lane], block->z[lane]);
-        float3 v1 = (float3)(block->x[4 + lane], block->y[4 + lane], block->z[4 + lane]);
-        float3 v2 = (float3)(block->x[8 + lane], block->y[8 + lane], block->z[8 + lane]);
-        // The plane's normal from raw vertex differences, compensated: slivers do as well as others.
-        float3 normal = accurate_cross3(v1 - v0, v2 - v0);
-        float nd = dot3(normal, ray->direction);
-        if (!is_seen_from(id, nd <= 0.0f)) {
-            continue;
-        }
-        float t = keep_to_box(dot3(normal, v0 - ray->origin) / nd, min3(min3(v0, v1), v2),
-                              max3(max3(v0, v1), v2), boxes);
-        float scale = 1.0f / ((float*)&determinant)[lane];
-        offer_hit(state, t, ((float*)&v)[lane] * scale, ((float*)&w)[lane] * scale, id, any_hit);
     }
 }
 

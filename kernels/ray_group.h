@@ -1,0 +1,70 @@
+// Sixteen rays side by side, as structure of arrays, and their hits.
+#ifndef SAHL_RAY_GROUP_H
+#define SAHL_RAY_GROUP_H
+
+#include "kernels/bvh.h"
+#include "kernels/hit.h"
+#include "kernels/simd.h"
+
+/// Rays in the space of one tree, with what their tests against boxes and triangles need (see
+/// RayBoxTest and RayShear).
+typedef struct {
+    float16 origin[3], direction[3];
+    float16 inverse[3], near_addend[3], far_addend[3];
+    float16 shear_x, shear_y;  // for the axes of the pass that is under way
+    int16 exclude;             // the primitive of this tree that they start on, or SAHL_NO_PRIMITIVE
+} RayGroup;
+
+/// What the rays have met so far: hits with 0 < t, ordered as in HitState.
+typedef struct {
+    float16 t;
+    float16 u, v;
+    int16 primitive;  // -1 while there is none, before all others in the order of ties
+    int16 instance;
+    int16 occlusion;  // any hit only: SAHL_HIT_*
+    int16 start_primitive, start_instance;
+} GroupHits;
+
+static inline float lane_of(float16 v, uint lane) { return ((const float*)&v)[lane]; }
+
+/// 1/d, with ±1e18 for components that are (nearly) 0, as finite_inverse().
+static inline float16 finite_inverse16(float16 d) {
+    float16 magnitude = fabs(d);
+    magnitude = magnitude < 1e-18f ? (float16)(1e-18f) : magnitude;
+    return as_float16(as_int16(1.0f / magnitude) | (as_int16(d) & (int16)(0x80000000)));
+}
+
+/// What ray_box_test() is for one ray.
+static inline void prepare_box_tests(RayGroup* rays, float extent) {
+    for (uint axis = 0; axis < 3u; ++axis) {
+        float16 r = finite_inverse16(rays->direction[axis]);
+        float16 o = rays->origin[axis];
+        float16 e = (fabs(o) + extent) * 0x1p-20f * fabs(r);
+        rays->inverse[axis] = r;
+        rays->near_addend[axis] = -(o * r) - e;
+        rays->far_addend[axis] = -(o * r) + e;
+    }
+}
+
+/// Which rays can meet anything: finite ones that have a direction.
+static inline Lanes16 are_traceable(const RayGroup* rays) {
+    const float16* o = rays->origin;
+    const float16* d = rays->direction;
+    const float16 sum = (o[0] + o[1] + o[2]) * 0.0f + (d[0] + d[1] + d[2]) * 0.0f;
+    const float16 magnitude = SAHL_MAX(SAHL_MAX(fabs(d[0]), fabs(d[1])), fabs(d[2]));
+    return equal16(sum, (float16)(0.0f)) & less16((float16)(0.0f), magnitude);
+}
+
+/// The lanes whose hit at `t` on a surface comes before the one they have.
+static inline Lanes16 come_before(const GroupHits* hits, float16 nearest, float16 t, int primitive, int instance) {
+    Lanes16 before = less16(t, nearest);
+    Lanes16 ties = equal16(t, nearest);
+    if (any16(ties)) {
+        Lanes16 lower = less16((int16)(instance), hits->instance) |
+                        (equal16((int16)(instance), hits->instance) & less16((int16)(primitive), hits->primitive));
+        before |= ties & lower;
+    }
+    return before;
+}
+
+#endif

@@ -1,0 +1,409 @@
+// Traversal of the 8-wide tree by packets of 128 rays, for rays that go much the same way: camera rays
+// and shadow rays to a point.
+//
+// A packet is split into passes by octant and shear axis (triangle.h), so that within a pass near and
+// far planes and the order of children are the same for all rays. At a node one test of the pass's
+// interval of rays against eight boxes (Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing
+// Algorithm", sec. 3; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire
+// Ray Packets") drops most children; those left are prefetched and tested by groups of sixteen rays. In
+// a leaf one triangle at a time meets sixteen rays.
+// Instances wait until their place in the tree has been passed; then the packet's rays are transformed
+// and walk the group's tree by passes of their own.
+// Pro: memory is read once for 128 rays, and all arithmetic is sixteen wide. Con: rays that part ways
+// drag each other along; traverse_stream.h is for those.
+#ifndef SAHL_TRAVERSE_PACKET_H
+#define SAHL_TRAVERSE_PACKET_H
+
+#include "kernels/traverse_scalar.h"
+#include "kernels/triangle_group.h"
+
+#define SAHL_PACKET_GROUPS 8u
+#define SAHL_PACKET_RAYS 128u
+#define SAHL_WAITING_INSTANCES 32u
+
+/// The rays of a packet, in the world and in the instance that is being walked through.
+typedef struct {
+    RayGroup rays[SAHL_LEVELS][SAHL_PACKET_GROUPS];
+    GroupHits hits[SAHL_PACKET_GROUPS];
+} Packet;
+
+/// A pass: the packet's rays of one octant and shear axis.
+typedef struct {
+    PassAxes axes;
+    float inverse_lo[3], inverse_hi[3];   // intervals over the rays
+    float near_origin[3], far_origin[3];  // the origins that make near planes nearest, far ones farthest
+    float farthest;                       // of the groups' ranges
+} Pass;
+
+/// The pass that each ray of a group belongs to: octant + 8 · shear axis.
+static inline int16 pass_of(const RayGroup* rays) {
+    float16 x = fabs(rays->direction[0]), y = fabs(rays->direction[1]), z = fabs(rays->direction[2]);
+    Lanes16 along_x = less_equal16(y, x) & less_equal16(z, x);
+    Lanes16 along_y = less_equal16(z, y);
+    int16 axis = select16(along_x, (int16)(0), select16(along_y, (int16)(8), (int16)(16)));
+    return axis | (as_int16(rays->inverse[0]) >> 31 & (int16)(1)) |
+           (as_int16(rays->inverse[1]) >> 31 & (int16)(2)) | (as_int16(rays->inverse[2]) >> 31 & (int16)(4));
+}
+
+/// One bit for each pass that the groups' rays need.
+static inline uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, int16* pass_numbers) {
+    int16 passes = 0;
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+        pass_numbers[g] = -1;
+        if (groups >> g & 1u) {
+            Lanes16 alive = are_traceable(rays + g) & less16((float16)(-INFINITY), hits[g].t);
+            pass_numbers[g] = select16(alive, pass_of(rays + g), (int16)(-1));
+            passes |= select16(alive, (int16)(1) << pass_of(rays + g), (int16)(0));
+        }
+    }
+    int8 half_of_it = passes.lo | passes.hi;
+    int4 quarter = half_of_it.lo | half_of_it.hi;
+    return (uint)(quarter.x | quarter.y | quarter.z | quarter.w);
+}
+
+/// Sets up the rays of pass `number`: `far` where their ranges end (-inf for others), `group_far` the
+/// farthest of each group. Returns the groups that have any.
+static inline uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
+                              const GroupHits* hits, uint groups, const int16* pass_numbers, float16* far,
+                              float* group_far) {
+    const float16 infinite = INFINITY;
+    PassAxes* axes = &pass->axes;
+    axes->octant = number & 7u;
+    axes->kz = number >> 3;
+    axes->kx = axes->kz == 2u ? 0u : axes->kz + 1u;
+    axes->ky = axes->kx == 2u ? 0u : axes->kx + 1u;
+    axes->instance = instance;
+    float16 inverse_lo[3], inverse_hi[3], origin_lo[3], origin_hi[3];
+    for (uint k = 0; k < 3u; ++k) {
+        inverse_lo[k] = infinite;
+        inverse_hi[k] = -infinite;
+        origin_lo[k] = infinite;
+        origin_hi[k] = -infinite;
+    }
+    uint present = 0;
+    pass->farthest = -INFINITY;
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+        far[g] = -infinite;
+        group_far[g] = -INFINITY;
+        if (!(groups >> g & 1u)) {
+            continue;
+        }
+        RayGroup* group = rays + g;
+        Lanes16 active = equal16(pass_numbers[g], (int16)((int)number));
+        if (!any16(active)) {
+            continue;
+        }
+        present |= 1u << g;
+        far[g] = select16(active, hits[g].t, -infinite);
+        group_far[g] = greatest16(far[g]);
+        pass->farthest = SAHL_MAX(pass->farthest, group_far[g]);
+        for (uint k = 0; k < 3u; ++k) {
+            float16 low = select16(active, group->inverse[k], infinite);
+            float16 high = select16(active, group->inverse[k], -infinite);
+            inverse_lo[k] = SAHL_MIN(inverse_lo[k], low);
+            inverse_hi[k] = SAHL_MAX(inverse_hi[k], high);
+            low = select16(active, group->origin[k], infinite);
+            high = select16(active, group->origin[k], -infinite);
+            origin_lo[k] = SAHL_MIN(origin_lo[k], low);
+            origin_hi[k] = SAHL_MAX(origin_hi[k], high);
+        }
+        float16 dz = group->direction[axes->kz];
+        group->shear_x = -(group->direction[axes->kx] / dz);
+        group->shear_y = -(group->direction[axes->ky] / dz);
+    }
+    axes->common_origin = true;
+    for (uint k = 0; k < 3u; ++k) {
+        pass->inverse_lo[k] = least16(inverse_lo[k]);
+        pass->inverse_hi[k] = greatest16(inverse_hi[k]);
+        float lo = least16(origin_lo[k]), hi = greatest16(origin_hi[k]);
+        // Outward by what covers the rounding here and of the primitives' tests (see bvh.h).
+        float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
+        bool backward = (axes->octant >> k & 1u) != 0u;
+        pass->near_origin[k] = backward ? lo - e : hi + e;
+        pass->far_origin[k] = backward ? hi + e : lo - e;
+        axes->common_origin = axes->common_origin && lo == hi;
+        axes->origin[k] = lo;
+    }
+    return present;
+}
+
+/// Along one axis: where the first ray may pass the near planes, or the last one the far planes.
+static inline float8 first_crossing(float8 planes, float origin, float inverse_lo, float inverse_hi) {
+    float8 distance = planes - origin;
+    return SAHL_MIN(distance * inverse_lo, distance * inverse_hi);
+}
+static inline float8 last_crossing(float8 planes, float origin, float inverse_lo, float inverse_hi) {
+    float8 distance = planes - origin;
+    return SAHL_MAX(distance * inverse_lo, distance * inverse_hi);
+}
+
+/// The children that rays of the pass may meet; *entry: the nearest that any enters each.
+static inline uint children_of_interest(const global BvhNode* node, const Pass* pass, float8* entry) {
+    const global float* planes = (const global float*)node;
+    const uint octant = pass->axes.octant;
+    const float* lo = pass->inverse_lo;
+    const float* hi = pass->inverse_hi;
+    uint x = octant & 1u ? 3u : 0u, y = octant & 2u ? 4u : 1u, z = octant & 4u ? 5u : 2u;
+    float8 enter = SAHL_MAX(
+        SAHL_MAX(first_crossing(vload8(x, planes), pass->near_origin[0], lo[0], hi[0]),
+                 first_crossing(vload8(y, planes), pass->near_origin[1], lo[1], hi[1])),
+        SAHL_MAX(first_crossing(vload8(z, planes), pass->near_origin[2], lo[2], hi[2]), (float8)(0.0f)));
+    float8 leave = SAHL_MIN(
+        SAHL_MIN(last_crossing(vload8(3u - x, planes), pass->far_origin[0], lo[0], hi[0]),
+                 last_crossing(vload8(5u - y, planes), pass->far_origin[1], lo[1], hi[1])),
+        SAHL_MIN(last_crossing(vload8(7u - z, planes), pass->far_origin[2], lo[2], hi[2]),
+                 (float8)(pass->farthest * SAHL_CULL_SLACK)));
+    *entry = enter;
+    return mask8_le(enter, leave);
+}
+
+/// The groups of `groups` of which a ray meets child `slot`.
+static inline uint groups_that_meet(const global BvhNode* node, uint slot, uint octant, const RayGroup* rays,
+                                    const float16* far, uint groups) {
+    const global float* planes = (const global float*)node + slot;
+    uint x = octant & 1u ? 24u : 0u, y = octant & 2u ? 32u : 8u, z = octant & 4u ? 40u : 16u;
+    float near_x = planes[x], near_y = planes[y], near_z = planes[z];
+    float far_x = planes[24u - x], far_y = planes[40u - y], far_z = planes[56u - z];
+    uint met = 0;
+#pragma unroll
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+        if (groups >> g & 1u) {
+            const RayGroup* group = rays + g;
+            float16 enter =
+                SAHL_MAX(SAHL_MAX(fma((float16)(near_x), group->inverse[0], group->near_addend[0]),
+                                  fma((float16)(near_y), group->inverse[1], group->near_addend[1])),
+                         SAHL_MAX(fma((float16)(near_z), group->inverse[2], group->near_addend[2]),
+                                  (float16)(0.0f)));
+            float16 leave =
+                SAHL_MIN(SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
+                                  fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
+                         SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]),
+                                  far[g] * SAHL_CULL_SLACK));
+            met |= (uint)any16(less_equal16(enter, leave)) << g;
+        }
+    }
+    return met;
+}
+
+/// A leaf's one block of a kind that has no test for sixteen rays: ray by ray.
+static inline bool intersect_leaf_by_ray(const Bvh* bvh, uint child, const RayGroup* rays, float16* far,
+                                         GroupHits* hits, uint instance, float extent, bool any_hit) {
+    uint lanes = bits16(less16((float16)(0.0f), *far));
+    bool taken = false;
+    while (lanes != 0u) {
+        uint lane = lowest_lane(lanes);
+        lanes &= lanes - 1u;
+        Ray ray;
+        ray.origin = (float3)(lane_of(rays->origin[0], lane), lane_of(rays->origin[1], lane),
+                              lane_of(rays->origin[2], lane));
+        ray.direction = (float3)(lane_of(rays->direction[0], lane), lane_of(rays->direction[1], lane),
+                                 lane_of(rays->direction[2], lane));
+        ray.exclude = (uint)((const int*)&rays->exclude)[lane];
+        ray.instance = instance;
+        TracedRay traced = traced_ray(ray.origin, ray.direction, &ray, instance, extent);
+        float* t = (float*)far + lane;
+        int* primitive = (int*)&hits->primitive + lane;
+        int* hit_instance = (int*)&hits->instance + lane;
+        HitState state = hit_state(0.0f, *t);
+        state.inside_of = instance;
+        state.before_rank = *primitive < 0 ? 0ul : surface_rank((uint)*hit_instance, (uint)*primitive);
+        intersect_leaf(bvh, child, &traced.ray, &traced.shear, &traced.boxes, &state, any_hit);
+        if (any_hit) {
+            ((int*)&hits->occlusion)[lane] |= (int)state.occlusion;
+            if (state.occlusion & SAHL_HIT_OPAQUE) {
+                *t = -INFINITY;
+                taken = true;
+            }
+        } else if (state.primitive != SAHL_NO_PRIMITIVE) {
+            *t = state.t;
+            ((float*)&hits->u)[lane] = state.u;
+            ((float*)&hits->v)[lane] = state.v;
+            *primitive = (int)state.primitive;
+            *hit_instance = (int)instance;
+            taken = true;
+        }
+    }
+    return taken;
+}
+
+/// The rays of `groups` in the space of instance `i`'s group.
+static inline void enter_instance(const Bvh* bvh, Packet* packet, uint groups, uint i) {
+    const global DeviceInstance* instance = bvh->instances + i;
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+        if (!(groups >> g & 1u)) {
+            continue;
+        }
+        const RayGroup* from = packet->rays[0] + g;
+        RayGroup* to = packet->rays[1] + g;
+        for (uint lane = 0; lane < 16u; ++lane) {
+            float3 o = (float3)(lane_of(from->origin[0], lane), lane_of(from->origin[1], lane),
+                                lane_of(from->origin[2], lane));
+            float3 d = (float3)(lane_of(from->direction[0], lane), lane_of(from->direction[1], lane),
+                                lane_of(from->direction[2], lane));
+            o = round3(group_from_world_point(instance, convert_real3(o)));
+            d = round3(group_from_world_vector(instance, convert_real3(d)));
+            ((float*)&to->origin[0])[lane] = o.x;
+            ((float*)&to->origin[1])[lane] = o.y;
+            ((float*)&to->origin[2])[lane] = o.z;
+            ((float*)&to->direction[0])[lane] = d.x;
+            ((float*)&to->direction[1])[lane] = d.y;
+            ((float*)&to->direction[2])[lane] = d.z;
+        }
+        prepare_box_tests(to, instance->extent);
+        to->exclude = select16(equal16(packet->hits[g].start_instance, (int16)((int)i + 1)),
+                               packet->hits[g].start_primitive, (int16)((int)SAHL_NO_PRIMITIVE));
+    }
+}
+
+/// Brings the packet's hits up to hits[g].t into `hits`: the first ones, or with any_hit what kinds of
+/// surfaces there are.
+static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
+    GroupHits* hits = packet->hits;
+    uint stack[SAHL_LEVELS * SAHL_STACK_SIZE];
+    float entries[SAHL_LEVELS * SAHL_STACK_SIZE];
+    uint stack_groups[SAHL_LEVELS * SAHL_STACK_SIZE];
+    uint waiting[SAHL_WAITING_INSTANCES], waiting_groups[SAHL_WAITING_INSTANCES];
+    uint waiting_count = 0;
+    float16 far[SAHL_PACKET_GROUPS];
+    float group_far[SAHL_PACKET_GROUPS];
+    int16 pass_numbers[SAHL_LEVELS][SAHL_PACKET_GROUPS];
+
+    uint level = 0, root = 0, instance = SAHL_WORLD, groups = (1u << SAHL_PACKET_GROUPS) - 1u;
+    uint size = 0, base = 0;
+    float extent = bvh->extent;
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+        prepare_box_tests(packet->rays[0] + g, extent);
+        packet->rays[0][g].exclude =
+            select16(equal16(hits[g].start_instance, (int16)((int)SAHL_WORLD)), hits[g].start_primitive,
+                     (int16)((int)SAHL_NO_PRIMITIVE));
+    }
+    uint passes = passes_of(packet->rays[0], hits, groups, pass_numbers[0]);
+    uint world_passes = 0;
+    for (;;) {
+        if (passes == 0u || waiting_count == SAHL_WAITING_INSTANCES) {
+            // This tree is done, or no more instances can wait: on to one of those, or back to the world.
+            if (level == 0u) {
+                world_passes = passes;
+                base = size;
+            }
+            if (waiting_count > 0u) {
+                --waiting_count;
+                uint i = waiting[waiting_count];
+                level = 1u;
+                instance = i + 1u;
+                root = bvh->instances[i].root;
+                extent = bvh->instances[i].extent;
+                groups = waiting_groups[waiting_count];
+                enter_instance(bvh, packet, groups, i);
+                passes = passes_of(packet->rays[1], hits, groups, pass_numbers[1]);
+                continue;
+            }
+            if (level == 0u || world_passes == 0u) {
+                break;
+            }
+            level = 0u;
+            root = 0u;
+            instance = SAHL_WORLD;
+            extent = bvh->extent;
+            groups = (1u << SAHL_PACKET_GROUPS) - 1u;
+            passes = world_passes;
+            base = 0u;
+        }
+        RayGroup* rays = packet->rays[level];
+        const uint number = lowest_lane(passes);
+        Pass pass;
+        uint present = begin_pass(&pass, number, instance, extent, rays, hits, groups, pass_numbers[level], far,
+                                  group_far);
+        const uint octant = pass.axes.octant;
+        if (size == base) {
+            stack[size] = root;
+            entries[size] = 0.0f;
+            stack_groups[size] = present;
+            ++size;
+        }
+        while (size > base && waiting_count < SAHL_WAITING_INSTANCES) {
+            --size;
+            const uint child = stack[size];
+            uint met = 0;
+            for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+                met |= (uint)(entries[size] <= group_far[g] * SAHL_CULL_SLACK) << g;
+            }
+            met &= stack_groups[size];
+            if (met == 0u) {
+                continue;
+            }
+            if (!(child & SAHL_CHILD_LEAF)) {
+                const global BvhNode* node = bvh->nodes + child;
+                float8 entry;
+                uint order = permute_by_octant(children_of_interest(node, &pass, &entry), octant);
+                while (order != 0u) {
+                    uint position = highest_lane(order);
+                    order ^= 1u << position;
+                    uint slot = position ^ octant;
+                    uint next = node->child[slot];
+                    prefetch_child(bvh, next);
+                    uint meeting = groups_that_meet(node, slot, octant, rays, far, met);
+                    stack[size] = next;
+                    entries[size] = ((float*)&entry)[slot];
+                    stack_groups[size] = meeting;
+                    size += meeting != 0u;
+                }
+                continue;
+            }
+            if (child_kind(child) == SAHL_KIND_INSTANCE) {
+                waiting[waiting_count] = child & SAHL_CHILD_OFFSET_MASK;
+                waiting_groups[waiting_count] = met;
+                ++waiting_count;
+                continue;
+            }
+            bool taken = false;
+            if (child_kind(child) == SAHL_KIND_TRIANGLE) {
+                const global TriangleBlock* block = (const global TriangleBlock*)leaf_block(bvh, child);
+                LazyPlanes planes;
+                planes.known = false;
+                float shifted[48];
+                if (pass.axes.common_origin) {
+                    const global float* axes = (const global float*)block;
+                    vstore16(vload16(pass.axes.kx, axes) - pass.axes.origin[pass.axes.kx], 0, shifted);
+                    vstore16(vload16(pass.axes.ky, axes) - pass.axes.origin[pass.axes.ky], 1, shifted);
+                    vstore16(vload16(pass.axes.kz, axes) - pass.axes.origin[pass.axes.kz], 2, shifted);
+                }
+                for (; met != 0u; met &= met - 1u) {
+                    uint g = lowest_lane(met);
+                    if (intersect_triangles16(block, &planes, shifted, rays + g, &pass.axes, far + g, hits + g,
+                                              any_hit)) {
+                        group_far[g] = greatest16(far[g]);
+                        taken = true;
+                    }
+                }
+            } else {
+                for (; met != 0u; met &= met - 1u) {
+                    uint g = lowest_lane(met);
+                    if (intersect_leaf_by_ray(bvh, child, rays + g, far + g, hits + g, instance, extent,
+                                              any_hit)) {
+                        group_far[g] = greatest16(far[g]);
+                        taken = true;
+                    }
+                }
+            }
+            if (taken) {
+                pass.farthest = group_far[0];
+                for (uint g = 1; g < SAHL_PACKET_GROUPS; ++g) {
+                    pass.farthest = SAHL_MAX(pass.farthest, group_far[g]);
+                }
+                if (any_hit && !(pass.farthest > 0.0f)) {
+                    size = base;
+                }
+            }
+        }
+        for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+            Lanes16 active = equal16(pass_numbers[level][g], (int16)((int)number));
+            hits[g].t = select16(active, far[g], hits[g].t);
+        }
+        if (size == base) {
+            passes &= passes - 1u;
+        }
+    }
+}
+
+#endif

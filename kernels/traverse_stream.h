@@ -1,0 +1,201 @@
+// Traversal of the 8-wide tree by a stream of single rays, for rays that go any way: diffuse bounces,
+// reflections off curved surfaces.
+//
+// A work-item keeps SAHL_STREAM_WIDTH rays in flight and works on two lists in turn: rays whose next
+// step is a node and rays whose next step is a leaf. Each step asks for the memory of the ray's next
+// one, which has arrived when its turn comes, and steps of one kind in a row predict their branches
+// well: that is the gain over one ray at a time (traverse_scalar.h), whose arithmetic this is. A ray
+// that is done makes place for the next one.
+// Source: the idea of many rays in flight per thread to hide latency is that of GPUs (Aila, Laine 2009,
+// "Understanding the Efficiency of Ray Traversal on GPUs").
+// Pro: indifferent to coherence. Con: nothing is shared between rays; traverse_packet.h does that.
+#ifndef SAHL_TRAVERSE_STREAM_H
+#define SAHL_TRAVERSE_STREAM_H
+
+#include "kernels/ray_batch.h"
+#include "kernels/traverse_scalar.h"
+
+#define SAHL_STREAM_WIDTH 32u
+#define SAHL_STREAM_RAYS 1024u
+
+// Ends of stacks: of the ray's, and of an instance's part of it. They look like leaves.
+#define SAHL_CHILD_END 0xffffffffu
+#define SAHL_CHILD_LEAVE 0xfffffffeu
+
+/// The rays of a stream and what takes their hits: a batch's rays and hits (ray_batch.h), or for any hit a list
+/// of shadow rays.
+typedef struct {
+    const global float* rays;
+    const global uint* ray_ids;
+    const global float* t_max;
+    global float* hits;
+    global uint* hit_ids;
+    uint capacity;
+} RaySource;
+
+/// A ray in flight. What node steps need is one cache line.
+typedef struct {
+    RayBoxTest boxes;  // in the world or in an instance
+    float cull_t;
+    uint index;  // of the ray
+    uint size;   // of its stack, whose top is the ray's next step
+    uint spare[3];
+    Ray ray;  // in the same space
+    RayShear shear;
+    HitState state;
+} __attribute__((aligned(64))) StreamRay;
+
+/// Waiting children and where the ray enters them. An odd number of cache lines, so that the stacks' bottoms do
+/// not compete for the same sets of the cache.
+typedef struct {
+    uint child[SAHL_LEVELS * SAHL_STACK_SIZE];
+    float entry[SAHL_LEVELS * SAHL_STACK_SIZE];
+    uint spare[16];
+} __attribute__((aligned(64))) StreamStack;
+
+static inline void put_into_space(StreamRay* ray, const TracedRay* traced) {
+    ray->boxes = traced->boxes;
+    ray->ray = traced->ray;
+    ray->shear = traced->shear;
+}
+
+static inline uint top_of(const StreamStack* stack, uint size) { return stack->child[size - 1u]; }
+
+/// Takes the waiting children that begin behind the hit off the stack.
+static inline void drop_hidden(StreamRay* ray, const StreamStack* stack) {
+    uint size = ray->size;
+    while (stack->entry[size - 1u] > ray->cull_t) {
+        --size;
+    }
+    ray->size = size;
+}
+
+static inline Ray source_ray(const RaySource* source, uint index) {
+    return load_ray(source->rays, source->ray_ids, source->capacity, index);
+}
+
+static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index, StreamRay* ray,
+                             StreamStack* stack) {
+    const Ray from = source_ray(source, index);
+    const float t_max = source->t_max[index];
+    const TracedRay traced = traced_ray(from.origin, from.direction, &from, SAHL_WORLD, bvh->extent);
+    put_into_space(ray, &traced);
+    ray->state = hit_state(0.0f, t_max);
+    ray->cull_t = t_max * SAHL_CULL_SLACK;
+    ray->index = index;
+    stack->child[0] = SAHL_CHILD_END;
+    stack->entry[0] = -INFINITY;
+    stack->child[1] = 0u;
+    stack->entry[1] = 0.0f;
+    ray->size = can_meet_anything(&from) ? 2u : 1u;
+}
+
+static inline void finish_ray(const RaySource* source, const StreamRay* ray, bool any_hit) {
+    if (any_hit) {
+        source->hit_ids[ray->index] = ray->state.occlusion & SAHL_HIT_OPAQUE ? SAHL_HIT_OPAQUE : ray->state.occlusion;
+    } else {
+        store_hit(source->hits, source->hit_ids, source->capacity, ray->index, &ray->state);
+    }
+}
+
+/// Opens the node on top of the stack.
+static inline void visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack) {
+    const uint size = ray->size - 1u;
+    const global BvhNode* node = bvh->nodes + stack->child[size];
+    float8 enter, leave;
+    intersect_children(node, &ray->boxes, 0.0f, ray->cull_t, &enter, &leave);
+    ray->size = push_children(node, enter, leave, ray->boxes.octant, stack->child, stack->entry, size);
+}
+
+/// Goes into the instance that was on top of the stack, or comes back out of it.
+static inline void change_space(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
+                                uint child) {
+    const Ray in_world = source_ray(source, ray->index);
+    if (child == SAHL_CHILD_LEAVE) {
+        const TracedRay traced =
+            traced_ray(in_world.origin, in_world.direction, &in_world, SAHL_WORLD, bvh->extent);
+        put_into_space(ray, &traced);
+        ray->state.inside_of = SAHL_WORLD;
+        return;
+    }
+    const uint i = child & SAHL_CHILD_OFFSET_MASK;
+    const TracedRay traced = traced_in_instance(bvh, &in_world, i);
+    put_into_space(ray, &traced);
+    ray->state.inside_of = i + 1u;
+    stack->child[ray->size] = SAHL_CHILD_LEAVE;
+    stack->entry[ray->size] = -INFINITY;
+    stack->child[ray->size + 1u] = bvh->instances[i].root;
+    stack->entry[ray->size + 1u] = 0.0f;
+    ray->size += 2u;
+}
+
+/// Does what the leaf on top of the stack asks for.
+static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
+                              bool any_hit) {
+    const uint child = stack->child[--ray->size];
+    if (child_kind(child) >= SAHL_KIND_INSTANCE) {
+        change_space(bvh, source, ray, stack, child);
+    } else {
+        intersect_leaf(bvh, child, &ray->ray, &ray->shear, &ray->boxes, &ray->state, any_hit);
+        ray->cull_t = ray->state.t * SAHL_CULL_SLACK;
+        if (any_hit && (ray->state.occlusion & SAHL_HIT_OPAQUE)) {
+            ray->size = 1u;
+        }
+    }
+    drop_hidden(ray, stack);
+}
+
+/// Traces rays first..end-1 of the source: the first hits, or with any_hit what kinds of surfaces there are.
+static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
+    StreamRay flight[SAHL_STREAM_WIDTH];
+    StreamStack stacks[SAHL_STREAM_WIDTH];
+    // Places of rays whose next step is a node, and of those whose next step is a leaf.
+    uint at_node[SAHL_STREAM_WIDTH], at_leaf[SAHL_STREAM_WIDTH];
+    uint node_count = 0, leaf_count = 0;
+    uint next = first;
+    for (uint place = 0; place < SAHL_STREAM_WIDTH && next < end; ++place, ++next) {
+        start_ray(bvh, source, next, flight + place, stacks + place);
+        at_leaf[leaf_count++] = place;
+    }
+    while (node_count + leaf_count != 0u) {
+        const uint nodes = node_count;
+        node_count = 0;
+        for (uint k = 0; k < nodes; ++k) {
+            const uint place = at_node[k];
+            visit_node(bvh, flight + place, stacks + place);
+            const uint child = top_of(stacks + place, flight[place].size);
+            prefetch_child(bvh, child);
+            const uint leaf = child >> 31;
+            at_node[node_count] = place;
+            at_leaf[leaf_count] = place;
+            node_count += 1u - leaf;
+            leaf_count += leaf;
+        }
+        const uint leaves = leaf_count;
+        leaf_count = 0;
+        for (uint k = 0; k < leaves; ++k) {
+            const uint place = at_leaf[k];
+            StreamRay* ray = flight + place;
+            const uint top = top_of(stacks + place, ray->size);
+            if (top == SAHL_CHILD_END) {
+                finish_ray(source, ray, any_hit);
+                if (next == end) {
+                    continue;
+                }
+                start_ray(bvh, source, next, ray, stacks + place);
+                ++next;
+            } else if (top & SAHL_CHILD_LEAF) {
+                visit_leaf(bvh, source, ray, stacks + place, any_hit);
+            }
+            const uint child = top_of(stacks + place, ray->size);
+            prefetch_child(bvh, child);
+            const uint leaf = child >> 31;
+            at_node[node_count] = place;
+            at_leaf[leaf_count] = place;
+            node_count += 1u - leaf;
+            leaf_count += leaf;
+        }
+    }
+}
+
+#endif

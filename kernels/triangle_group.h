@@ -1,0 +1,142 @@
+// Watertight ray-triangle intersection, sixteen rays against the triangles of a block, one after the
+// other: the arithmetic of triangle.h, operation by operation, so that hits are the same bits.
+#ifndef SAHL_TRIANGLE_GROUP_H
+#define SAHL_TRIANGLE_GROUP_H
+
+#include "kernels/ray_group.h"
+#include "kernels/triangle.h"
+
+/// What a pass of a packet has in common: the rays' octant and shear axes (triangle.h), the tree they
+/// are in, and their origin if they share it.
+typedef struct {
+    uint octant;
+    uint kx, ky, kz;
+    uint instance;
+    bool common_origin;
+    float origin[3];
+} PassAxes;
+
+/// TrianglePlanes of a block once the first ray has passed an edge test.
+typedef struct {
+    bool known;
+    TrianglePlanes of;
+} LazyPlanes;
+
+/// Three sheared vertices.
+typedef struct {
+    float16 ax, ay, bx, by, cx, cy;
+} ShearedTriangle;
+
+/// Triangle `lane` of the block for rays of one octant and shear, whose edges `s` are seen by the rays
+/// `lanes`. `far`: where each ray's range ends, -inf for those that are not to be tested.
+/// Returns whether a hit was taken.
+static inline bool offer_triangle(const global TriangleBlock* block, uint lane, const TrianglePlanes* planes,
+                                  const ShearedTriangle* s, float16 u, float16 v, float16 w, Lanes16 lanes,
+                                  const RayGroup* rays, const PassAxes* pass, float16* far, GroupHits* hits,
+                                  bool any_hit) {
+    const uint octant = pass->octant;
+    float16 enter[3], leave[3], offset[3];
+    for (uint k = 0; k < 3u; ++k) {
+        bool backward = (octant >> k & 1u) != 0u;
+        float near = backward ? ((const float*)&planes->hi[k])[lane] : ((const float*)&planes->lo[k])[lane];
+        float far_plane = backward ? ((const float*)&planes->lo[k])[lane] : ((const float*)&planes->hi[k])[lane];
+        enter[k] = fma((float16)(near), rays->inverse[k], rays->near_addend[k]);
+        leave[k] = fma((float16)(far_plane), rays->inverse[k], rays->far_addend[k]);
+        offset[k] = ((const global float*)block)[16u * k + lane] - rays->origin[k];
+    }
+    float16 nearest = SAHL_MAX(SAHL_MAX(enter[0], enter[1]), enter[2]);
+    float16 farthest = SAHL_MIN(SAHL_MIN(leave[0], leave[1]), leave[2]);
+    float nx = ((const float*)&planes->normal[0])[lane], ny = ((const float*)&planes->normal[1])[lane], nz = ((const float*)&planes->normal[2])[lane];
+    float16 nd = nx * rays->direction[0] + ny * rays->direction[1] + nz * rays->direction[2];
+    float16 t = (nx * offset[0] + ny * offset[1] + nz * offset[2]) / nd;
+    t = t > nearest ? t : nearest;
+    t = t < farthest ? t : farthest;
+
+    uint id = block->id[lane];
+    int primitive = (int)(id & SAHL_ID_MASK);
+    lanes &= less16((float16)(0.0f), t) & come_before(hits, *far, t, primitive, (int)pass->instance);
+    if (!any16(lanes)) {
+        return false;
+    }
+    float16 determinant = (u + v) + w;
+    lanes &= not16(equal16(determinant, (float16)(0.0f)) | equal16((int16)(primitive), rays->exclude));
+    // Not collinear triangles, which would be hit far along their line.
+    lanes &= less_equal16((float16)(0.0f), SAHL_MAX(SAHL_MAX(s->ax, s->bx), s->cx)) &
+             less_equal16(SAHL_MIN(SAHL_MIN(s->ax, s->bx), s->cx), (float16)(0.0f)) &
+             less_equal16((float16)(0.0f), SAHL_MAX(SAHL_MAX(s->ay, s->by), s->cy)) &
+             less_equal16(SAHL_MIN(SAHL_MIN(s->ay, s->by), s->cy), (float16)(0.0f));
+    if (id & (SAHL_ID_BACK_ONLY | SAHL_ID_FRONT_ONLY)) {
+        Lanes16 front = less_equal16(nd, (float16)(0.0f));
+        lanes &= id & SAHL_ID_BACK_ONLY ? not16(front) : lanes;
+        lanes &= id & SAHL_ID_FRONT_ONLY ? front : lanes;
+    }
+    if (!any16(lanes)) {
+        return false;
+    }
+    if (any_hit) {
+        bool transparent = (id & SAHL_ID_TRANSPARENT) != 0u;
+        int met = transparent ? SAHL_HIT_TRANSPARENT : SAHL_HIT_OPAQUE;
+        hits->occlusion = select16(lanes, hits->occlusion | (int16)(met), hits->occlusion);
+        if (!transparent) {
+            *far = select16(lanes, (float16)(-INFINITY), *far);
+        }
+        return !transparent;
+    }
+    float16 scale = 1.0f / determinant;
+    *far = select16(lanes, t, *far);
+    hits->u = select16(lanes, v * scale, hits->u);
+    hits->v = select16(lanes, w * scale, hits->v);
+    hits->primitive = select16(lanes, (int16)(primitive), hits->primitive);
+    hits->instance = select16(lanes, (int16)((int)pass->instance), hits->instance);
+    return true;
+}
+
+/// The rays (of one pass) against the block's triangles. Returns whether a hit was taken.
+static inline bool intersect_triangles16(const global TriangleBlock* block, LazyPlanes* planes,
+                                         const float* shifted, const RayGroup* rays, const PassAxes* pass,
+                                         float16* far, GroupHits* hits, bool any_hit) {
+    const global float* axes = (const global float*)block;
+    const global float* x = axes + 16u * pass->kx;
+    const global float* y = axes + 16u * pass->ky;
+    const global float* z = axes + 16u * pass->kz;
+    float16 ox = rays->origin[pass->kx], oy = rays->origin[pass->ky], oz = rays->origin[pass->kz];
+    float16 sx = rays->shear_x, sy = rays->shear_y;
+    bool taken = false;
+    for (uint lane = 0; lane < SAHL_BLOCK_WIDTH; ++lane) {
+        ShearedTriangle s;
+        if (pass->common_origin) {
+            const float* p = shifted + lane;
+            s.ax = fma((float16)(p[32]), sx, (float16)(p[0]));
+            s.ay = fma((float16)(p[32]), sy, (float16)(p[16]));
+            s.bx = fma((float16)(p[36]), sx, (float16)(p[4]));
+            s.by = fma((float16)(p[36]), sy, (float16)(p[20]));
+            s.cx = fma((float16)(p[40]), sx, (float16)(p[8]));
+            s.cy = fma((float16)(p[40]), sy, (float16)(p[24]));
+        } else {
+            float16 az = z[lane] - oz, bz = z[4u + lane] - oz, cz = z[8u + lane] - oz;
+            s.ax = fma(az, sx, x[lane] - ox);
+            s.ay = fma(az, sy, y[lane] - oy);
+            s.bx = fma(bz, sx, x[4u + lane] - ox);
+            s.by = fma(bz, sy, y[4u + lane] - oy);
+            s.cx = fma(cz, sx, x[8u + lane] - ox);
+            s.cy = fma(cz, sy, y[8u + lane] - oy);
+        }
+        float16 w = s.bx * s.ay - s.by * s.ax;
+        float16 u = s.cx * s.by - s.cy * s.bx;
+        float16 v = s.ax * s.cy - s.ay * s.cx;
+        float16 least = SAHL_MIN(SAHL_MIN(u, v), w), greatest = SAHL_MAX(SAHL_MAX(u, v), w);
+        // NaN vertices, of unused lanes, end here: both comparisons are false.
+        Lanes16 inside =
+            less_equal16((float16)(0.0f), least) | less_equal16(greatest, (float16)(0.0f));
+        if (any16(inside)) {
+            if (!planes->known) {
+                planes->of = triangle_planes(block);
+                planes->known = true;
+            }
+            taken |= offer_triangle(block, lane, &planes->of, &s, u, v, w, inside, rays, pass, far, hits, any_hit);
+        }
+    }
+    return taken;
+}
+
+#endif
