@@ -54,8 +54,8 @@ static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float ext
     return test;
 }
 
-/// Where between t_min and t_max the ray enters and leaves the boxes of the children; it meets those for which
-/// *enter <= *leave.
+/// Where between t_min and t_max the ray enters and leaves the boxes of the children; it meets those for
+/// which *enter <= *leave.
 static inline void intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min,
                                       float t_max, float8* enter, float8* leave) {
     const global float* planes = (const global float*)node;

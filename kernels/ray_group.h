@@ -27,6 +27,18 @@ typedef struct {
 
 static inline float lane_of(float16 v, uint lane) { return ((const float*)&v)[lane]; }
 
+static inline void set_lane(RayGroup* rays, GroupHits* hits, uint lane, const Ray* ray, float t_max) {
+    ((float*)&rays->origin[0])[lane] = ray->origin.x;
+    ((float*)&rays->origin[1])[lane] = ray->origin.y;
+    ((float*)&rays->origin[2])[lane] = ray->origin.z;
+    ((float*)&rays->direction[0])[lane] = ray->direction.x;
+    ((float*)&rays->direction[1])[lane] = ray->direction.y;
+    ((float*)&rays->direction[2])[lane] = ray->direction.z;
+    ((float*)&hits->t)[lane] = t_max;
+    ((int*)&hits->start_primitive)[lane] = (int)ray->exclude;
+    ((int*)&hits->start_instance)[lane] = (int)ray->instance;
+}
+
 /// 1/d, with ±1e18 for components that are (nearly) 0, as finite_inverse().
 static inline float16 finite_inverse16(float16 d) {
     float16 magnitude = fabs(d);
@@ -56,12 +68,14 @@ static inline Lanes16 are_traceable(const RayGroup* rays) {
 }
 
 /// The lanes whose hit at `t` on a surface comes before the one they have.
-static inline Lanes16 come_before(const GroupHits* hits, float16 nearest, float16 t, int primitive, int instance) {
+static inline Lanes16 come_before(const GroupHits* hits, float16 nearest, float16 t, int primitive,
+                                  int instance) {
     Lanes16 before = less16(t, nearest);
     Lanes16 ties = equal16(t, nearest);
     if (any16(ties)) {
-        Lanes16 lower = less16((int16)(instance), hits->instance) |
-                        (equal16((int16)(instance), hits->instance) & less16((int16)(primitive), hits->primitive));
+        Lanes16 lower =
+            less16((int16)(instance), hits->instance) |
+            (equal16((int16)(instance), hits->instance) & less16((int16)(primitive), hits->primitive));
         before |= ties & lower;
     }
     return before;

@@ -4,23 +4,93 @@
 #include "kernels/light.h"
 #include "kernels/ray_batch.h"
 #include "kernels/surface.h"
+#include "kernels/traverse_packet.h"
 #include "kernels/traverse_scalar.h"
+#include "kernels/traverse_stream.h"
 
-/// The part of the light that comes through along `ray` up to t_max: 0 behind an opaque surface,
-/// else the product of the transmissions of the surfaces in between, each crossing once, in order.
-static inline float3 transmittance(const Bvh* bvh, const global DevicePrimitive* primitives,
-                                   const global DeviceMaterial* materials, const Ray* ray, float t_max) {
-    uint occlusion = any_hit(bvh, ray, t_max);
+/// What shadow kernels work on.
+typedef struct {
+    const global DevicePrimitive* primitives;
+    const global DeviceMaterial* materials;
+    const global DeviceLight* lights;
+    const global uint* hit_ids;
+    const global float* surfaces;  // SAHL_SURFACE_*
+    const global float* light;     // that each lamp would bring, three arrays a lamp
+    const global uint* outcomes;
+    global float* contributions;
+    uint capacity;
+} ShadowWork;
+
+/// Whether lamp `l` has a shadow ray from hit i; *brought: what it would bring.
+static inline bool has_shadow_ray(const ShadowWork* work, uint l, uint i, float3* brought) {
+    if (work->outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
+        return false;
+    }
+    *brought = load_soa3(work->light, 3u * l, work->capacity, i);
+    return is_nonzero(*brought);
+}
+
+static inline Ray ray_to_light(const ShadowWork* work, uint l, uint i) {
+    const float3 position = load_soa3(work->surfaces, SAHL_SURFACE_POSITION, work->capacity, i);
+    const float3 offset = load_soa3(work->surfaces, SAHL_SURFACE_OFFSET, work->capacity, i);
+    const global DeviceLight* light = work->lights + l;
+    Ray ray;
+    ray.origin = offset_origin(position, offset, vector_to_light(light, position));
+    ray.direction = vector_to_light(light, ray.origin);
+    ray.exclude = work->hit_ids[(size_t)SAHL_HIT_PRIMITIVE * work->capacity + i];
+    ray.instance = work->hit_ids[(size_t)SAHL_HIT_INSTANCE * work->capacity + i];
+    return ray;
+}
+
+/// The part of the light that comes through along `ray` up to t_max, which meets SAHL_HIT_* `occlusion`: 0
+/// behind an opaque surface, else the product of the transmissions of the surfaces in between, each crossing
+/// once, in order.
+static inline float3 transmittance(const Bvh* bvh, const ShadowWork* work, const Ray* ray, float t_max,
+                                   uint occlusion) {
     if (occlusion != SAHL_HIT_TRANSPARENT) {
         return (float3)(occlusion == SAHL_HIT_NOTHING ? 1.0f : 0.0f);
     }
     float3 through = (float3)(1.0f);
     HitState hit = closest_hit(bvh, ray, hit_state(0.0f, t_max));
     while (hit.primitive != SAHL_NO_PRIMITIVE) {
-        through *= load3(materials[primitives[hit.primitive].material].transmission);
+        through *= load3(work->materials[work->primitives[hit.primitive].material].transmission);
         hit = closest_hit(bvh, ray, hit_state_behind(hit, t_max));
     }
     return through;
+}
+
+static inline void add_light(const ShadowWork* work, uint i, float3 light) {
+    const float3 sum = load_soa3(work->contributions, 0u, work->capacity, i);
+    store_soa3(work->contributions, 0u, work->capacity, i, sum + light);
+}
+
+/// The shadow rays of hits first..end-1, lamp by lamp: gathered, traced together, added.
+static inline void shadow_together(const Bvh* bvh, const ShadowWork* work, uint light_count, uint first,
+                                   uint end, bool by_packets) {
+    ShadowRays list;
+    uint hits[SAHL_SHADOW_RAYS];
+    float3 brought;
+    for (uint l = 0; l < light_count; ++l) {
+        const float t_max = shadow_t_max(work->lights + l);
+        list.count = 0;
+        for (uint i = first; i < end; ++i) {
+            if (has_shadow_ray(work, l, i, &brought)) {
+                const Ray ray = ray_to_light(work, l, i);
+                hits[list.count] = i;
+                add_shadow_ray(&list, &ray, t_max);
+            }
+        }
+        if (by_packets) {
+            occlude_by_packets(bvh, &list);
+        } else {
+            occlude_by_stream(bvh, &list);
+        }
+        for (uint k = 0; k < list.count; ++k) {
+            const Ray ray = shadow_ray(&list, k);
+            has_shadow_ray(work, l, hits[k], &brought);
+            add_light(work, hits[k], brought * transmittance(bvh, work, &ray, t_max, list.occlusion[k]));
+        }
+    }
 }
 
 kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leaves,
@@ -31,27 +101,18 @@ kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leave
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity, const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
+                             shadow_light, outcomes,  contributions, capacity};
     SAHL_FOR_EACH_RAY(i, count) {
-        if (outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
-            continue;
-        }
-        const float3 position = load_soa3(shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i);
-        const float3 offset = load_soa3(shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i);
-        float3 sum = load_soa3(contributions, 0u, capacity, i);
+        float3 brought;
         for (uint l = 0; l < scene.light_count; ++l) {
-            float3 brought = load_soa3(shadow_light, 3u * l, capacity, i);
-            if (!is_nonzero(brought)) {
-                continue;
+            if (has_shadow_ray(&work, l, i, &brought)) {
+                const Ray ray = ray_to_light(&work, l, i);
+                const float t_max = shadow_t_max(lights + l);
+                add_light(&work, i,
+                          brought * transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));
             }
-            float3 side = vector_to_light(lights + l, position);
-            Ray ray;
-            ray.origin = offset_origin(position, offset, side);
-            ray.direction = vector_to_light(lights + l, ray.origin);
-            ray.exclude = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
-            ray.instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
-            sum += brought * transmittance(&bvh, primitives, materials, &ray, shadow_t_max(lights + l));
         }
-        store_soa3(contributions, 0u, capacity, i, sum);
     }
 }
 
@@ -63,27 +124,12 @@ kernel void shadow_packet(const global BvhNode* nodes, const global uchar* leave
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity, const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
-    SAHL_FOR_EACH_RAY(i, count) {
-        if (outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
-            continue;
-        }
-        const float3 position = load_soa3(shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i);
-        const float3 offset = load_soa3(shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i);
-        float3 sum = load_soa3(contributions, 0u, capacity, i);
-        for (uint l = 0; l < scene.light_count; ++l) {
-            float3 brought = load_soa3(shadow_light, 3u * l, capacity, i);
-            if (!is_nonzero(brought)) {
-                continue;
-            }
-            float3 side = vector_to_light(lights + l, position);
-            Ray ray;
-            ray.origin = offset_origin(position, offset, side);
-            ray.direction = vector_to_light(lights + l, ray.origin);
-            ray.exclude = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
-            ray.instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
-            sum += brought * transmittance(&bvh, primitives, materials, &ray, shadow_t_max(lights + l));
-        }
-        store_soa3(contributions, 0u, capacity, i, sum);
+    const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
+                             shadow_light, outcomes,  contributions, capacity};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        shadow_together(&bvh, &work, scene.light_count, first, SAHL_MIN(first + SAHL_SHADOW_RAYS, count),
+                        true);
     }
 }
 
@@ -95,26 +141,11 @@ kernel void shadow_stream(const global BvhNode* nodes, const global uchar* leave
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity, const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
-    SAHL_FOR_EACH_RAY(i, count) {
-        if (outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
-            continue;
-        }
-        const float3 position = load_soa3(shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i);
-        const float3 offset = load_soa3(shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i);
-        float3 sum = load_soa3(contributions, 0u, capacity, i);
-        for (uint l = 0; l < scene.light_count; ++l) {
-            float3 brought = load_soa3(shadow_light, 3u * l, capacity, i);
-            if (!is_nonzero(brought)) {
-                continue;
-            }
-            float3 side = vector_to_light(lights + l, position);
-            Ray ray;
-            ray.origin = offset_origin(position, offset, side);
-            ray.direction = vector_to_light(lights + l, ray.origin);
-            ray.exclude = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
-            ray.instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
-            sum += brought * transmittance(&bvh, primitives, materials, &ray, shadow_t_max(lights + l));
-        }
-        store_soa3(contributions, 0u, capacity, i, sum);
+    const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
+                             shadow_light, outcomes,  contributions, capacity};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        shadow_together(&bvh, &work, scene.light_count, first, SAHL_MIN(first + SAHL_SHADOW_RAYS, count),
+                        false);
     }
 }

@@ -68,9 +68,7 @@ static inline uint bits16(Lanes16 lanes) { return lanes; }
 static inline Lanes16 lanes16(uint bits) { return (Lanes16)bits; }
 static inline Lanes16 not16(Lanes16 lanes) { return (Lanes16)~lanes; }
 
-static inline uint mask8_le(float8 a, float8 b) {
-    return __builtin_ia32_cmpps256_mask(a, b, 2, (uchar)0xff);
-}
+static inline uint mask8_le(float8 a, float8 b) { return __builtin_ia32_cmpps256_mask(a, b, 2, (uchar)0xff); }
 static inline uint mask16_le(float16 a, float16 b) { return less_equal16(a, b); }
 static inline uint mask16_ge(float16 a, float16 b) { return less_equal16(b, a); }
 
@@ -130,6 +128,9 @@ static inline void prefetch_lines(const global void* p, uint lines) {
     for (uint line = 0; line < lines; ++line) {
         __builtin_prefetch((const void*)((ulong)p + 64u * line));
     }
+#else
+    (void)p;
+    (void)lines;
 #endif
 }
 

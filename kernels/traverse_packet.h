@@ -14,118 +14,11 @@
 #ifndef SAHL_TRAVERSE_PACKET_H
 #define SAHL_TRAVERSE_PACKET_H
 
+#include "kernels/packet.h"
 #include "kernels/traverse_scalar.h"
 #include "kernels/triangle_group.h"
 
-#define SAHL_PACKET_GROUPS 8u
-#define SAHL_PACKET_RAYS 128u
 #define SAHL_WAITING_INSTANCES 32u
-
-/// The rays of a packet, in the world and in the instance that is being walked through.
-typedef struct {
-    RayGroup rays[SAHL_LEVELS][SAHL_PACKET_GROUPS];
-    GroupHits hits[SAHL_PACKET_GROUPS];
-} Packet;
-
-/// A pass: the packet's rays of one octant and shear axis.
-typedef struct {
-    PassAxes axes;
-    float inverse_lo[3], inverse_hi[3];   // intervals over the rays
-    float near_origin[3], far_origin[3];  // the origins that make near planes nearest, far ones farthest
-    float farthest;                       // of the groups' ranges
-} Pass;
-
-/// The pass that each ray of a group belongs to: octant + 8 · shear axis.
-static inline int16 pass_of(const RayGroup* rays) {
-    float16 x = fabs(rays->direction[0]), y = fabs(rays->direction[1]), z = fabs(rays->direction[2]);
-    Lanes16 along_x = less_equal16(y, x) & less_equal16(z, x);
-    Lanes16 along_y = less_equal16(z, y);
-    int16 axis = select16(along_x, (int16)(0), select16(along_y, (int16)(8), (int16)(16)));
-    return axis | (as_int16(rays->inverse[0]) >> 31 & (int16)(1)) |
-           (as_int16(rays->inverse[1]) >> 31 & (int16)(2)) | (as_int16(rays->inverse[2]) >> 31 & (int16)(4));
-}
-
-/// One bit for each pass that the groups' rays need.
-static inline uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, int16* pass_numbers) {
-    int16 passes = 0;
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-        pass_numbers[g] = -1;
-        if (groups >> g & 1u) {
-            Lanes16 alive = are_traceable(rays + g) & less16((float16)(-INFINITY), hits[g].t);
-            pass_numbers[g] = select16(alive, pass_of(rays + g), (int16)(-1));
-            passes |= select16(alive, (int16)(1) << pass_of(rays + g), (int16)(0));
-        }
-    }
-    int8 half_of_it = passes.lo | passes.hi;
-    int4 quarter = half_of_it.lo | half_of_it.hi;
-    return (uint)(quarter.x | quarter.y | quarter.z | quarter.w);
-}
-
-/// Sets up the rays of pass `number`: `far` where their ranges end (-inf for others), `group_far` the
-/// farthest of each group. Returns the groups that have any.
-static inline uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
-                              const GroupHits* hits, uint groups, const int16* pass_numbers, float16* far,
-                              float* group_far) {
-    const float16 infinite = INFINITY;
-    PassAxes* axes = &pass->axes;
-    axes->octant = number & 7u;
-    axes->kz = number >> 3;
-    axes->kx = axes->kz == 2u ? 0u : axes->kz + 1u;
-    axes->ky = axes->kx == 2u ? 0u : axes->kx + 1u;
-    axes->instance = instance;
-    float16 inverse_lo[3], inverse_hi[3], origin_lo[3], origin_hi[3];
-    for (uint k = 0; k < 3u; ++k) {
-        inverse_lo[k] = infinite;
-        inverse_hi[k] = -infinite;
-        origin_lo[k] = infinite;
-        origin_hi[k] = -infinite;
-    }
-    uint present = 0;
-    pass->farthest = -INFINITY;
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-        far[g] = -infinite;
-        group_far[g] = -INFINITY;
-        if (!(groups >> g & 1u)) {
-            continue;
-        }
-        RayGroup* group = rays + g;
-        Lanes16 active = equal16(pass_numbers[g], (int16)((int)number));
-        if (!any16(active)) {
-            continue;
-        }
-        present |= 1u << g;
-        far[g] = select16(active, hits[g].t, -infinite);
-        group_far[g] = greatest16(far[g]);
-        pass->farthest = SAHL_MAX(pass->farthest, group_far[g]);
-        for (uint k = 0; k < 3u; ++k) {
-            float16 low = select16(active, group->inverse[k], infinite);
-            float16 high = select16(active, group->inverse[k], -infinite);
-            inverse_lo[k] = SAHL_MIN(inverse_lo[k], low);
-            inverse_hi[k] = SAHL_MAX(inverse_hi[k], high);
-            low = select16(active, group->origin[k], infinite);
-            high = select16(active, group->origin[k], -infinite);
-            origin_lo[k] = SAHL_MIN(origin_lo[k], low);
-            origin_hi[k] = SAHL_MAX(origin_hi[k], high);
-        }
-        float16 dz = group->direction[axes->kz];
-        group->shear_x = -(group->direction[axes->kx] / dz);
-        group->shear_y = -(group->direction[axes->ky] / dz);
-    }
-    axes->common_origin = true;
-    for (uint k = 0; k < 3u; ++k) {
-        pass->inverse_lo[k] = least16(inverse_lo[k]);
-        pass->inverse_hi[k] = greatest16(inverse_hi[k]);
-        float lo = least16(origin_lo[k]), hi = greatest16(origin_hi[k]);
-        // Outward by what covers the rounding here and of the primitives' tests (see bvh.h).
-        float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
-        bool backward = (axes->octant >> k & 1u) != 0u;
-        pass->near_origin[k] = backward ? lo - e : hi + e;
-        pass->far_origin[k] = backward ? hi + e : lo - e;
-        axes->common_origin = axes->common_origin && lo == hi;
-        axes->origin[k] = lo;
-    }
-    return present;
-}
 
 /// Along one axis: where the first ray may pass the near planes, or the last one the far planes.
 static inline float8 first_crossing(float8 planes, float origin, float inverse_lo, float inverse_hi) {
@@ -148,11 +41,11 @@ static inline uint children_of_interest(const global BvhNode* node, const Pass* 
         SAHL_MAX(first_crossing(vload8(x, planes), pass->near_origin[0], lo[0], hi[0]),
                  first_crossing(vload8(y, planes), pass->near_origin[1], lo[1], hi[1])),
         SAHL_MAX(first_crossing(vload8(z, planes), pass->near_origin[2], lo[2], hi[2]), (float8)(0.0f)));
-    float8 leave = SAHL_MIN(
-        SAHL_MIN(last_crossing(vload8(3u - x, planes), pass->far_origin[0], lo[0], hi[0]),
-                 last_crossing(vload8(5u - y, planes), pass->far_origin[1], lo[1], hi[1])),
-        SAHL_MIN(last_crossing(vload8(7u - z, planes), pass->far_origin[2], lo[2], hi[2]),
-                 (float8)(pass->farthest * SAHL_CULL_SLACK)));
+    float8 leave =
+        SAHL_MIN(SAHL_MIN(last_crossing(vload8(3u - x, planes), pass->far_origin[0], lo[0], hi[0]),
+                          last_crossing(vload8(5u - y, planes), pass->far_origin[1], lo[1], hi[1])),
+                 SAHL_MIN(last_crossing(vload8(7u - z, planes), pass->far_origin[2], lo[2], hi[2]),
+                          (float8)(pass->farthest * SAHL_CULL_SLACK)));
     *entry = enter;
     return mask8_le(enter, leave);
 }
@@ -169,16 +62,14 @@ static inline uint groups_that_meet(const global BvhNode* node, uint slot, uint 
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         if (groups >> g & 1u) {
             const RayGroup* group = rays + g;
-            float16 enter =
-                SAHL_MAX(SAHL_MAX(fma((float16)(near_x), group->inverse[0], group->near_addend[0]),
-                                  fma((float16)(near_y), group->inverse[1], group->near_addend[1])),
-                         SAHL_MAX(fma((float16)(near_z), group->inverse[2], group->near_addend[2]),
-                                  (float16)(0.0f)));
-            float16 leave =
-                SAHL_MIN(SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
-                                  fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
-                         SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]),
-                                  far[g] * SAHL_CULL_SLACK));
+            float16 enter = SAHL_MAX(
+                SAHL_MAX(fma((float16)(near_x), group->inverse[0], group->near_addend[0]),
+                         fma((float16)(near_y), group->inverse[1], group->near_addend[1])),
+                SAHL_MAX(fma((float16)(near_z), group->inverse[2], group->near_addend[2]), (float16)(0.0f)));
+            float16 leave = SAHL_MIN(SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
+                                              fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
+                                     SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]),
+                                              far[g] * SAHL_CULL_SLACK));
             met |= (uint)any16(less_equal16(enter, leave)) << g;
         }
     }
@@ -273,9 +164,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
     float extent = bvh->extent;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         prepare_box_tests(packet->rays[0] + g, extent);
-        packet->rays[0][g].exclude =
-            select16(equal16(hits[g].start_instance, (int16)((int)SAHL_WORLD)), hits[g].start_primitive,
-                     (int16)((int)SAHL_NO_PRIMITIVE));
+        packet->rays[0][g].exclude = select16(equal16(hits[g].start_instance, (int16)((int)SAHL_WORLD)),
+                                              hits[g].start_primitive, (int16)((int)SAHL_NO_PRIMITIVE));
     }
     uint passes = passes_of(packet->rays[0], hits, groups, pass_numbers[0]);
     uint world_passes = 0;
@@ -312,8 +202,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         RayGroup* rays = packet->rays[level];
         const uint number = lowest_lane(passes);
         Pass pass;
-        uint present = begin_pass(&pass, number, instance, extent, rays, hits, groups, pass_numbers[level], far,
-                                  group_far);
+        uint present = begin_pass(&pass, number, instance, extent, rays, hits, groups, pass_numbers[level],
+                                  far, group_far);
         const uint octant = pass.axes.octant;
         if (size == base) {
             stack[size] = root;
@@ -370,8 +260,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                 }
                 for (; met != 0u; met &= met - 1u) {
                     uint g = lowest_lane(met);
-                    if (intersect_triangles16(block, &planes, shifted, rays + g, &pass.axes, far + g, hits + g,
-                                              any_hit)) {
+                    if (intersect_triangles16(block, &planes, shifted, rays + g, &pass.axes, far + g,
+                                              hits + g, any_hit)) {
                         group_far[g] = greatest16(far[g]);
                         taken = true;
                     }
@@ -403,6 +293,16 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         if (size == base) {
             passes &= passes - 1u;
         }
+    }
+}
+
+/// Fills list->occlusion.
+static inline void occlude_by_packets(const Bvh* bvh, ShadowRays* list) {
+    for (uint first = 0; first < list->count; first += SAHL_PACKET_RAYS) {
+        Packet packet;
+        load_shadow_packet(&packet, list, first);
+        trace_packet(bvh, &packet, true);
+        store_occlusion(&packet, list, first);
     }
 }
 

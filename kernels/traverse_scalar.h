@@ -14,6 +14,7 @@
 #include "kernels/instance.h"
 #include "kernels/polygon.h"
 #include "kernels/quadric.h"
+#include "kernels/shadow_rays.h"
 #include "kernels/sphere.h"
 #include "kernels/triangle.h"
 
@@ -75,7 +76,7 @@ typedef struct {
 
 /// `exclude` is left out only where `instance` is the one that the ray starts on.
 SAHL_INLINE TracedRay traced_ray(float3 origin, float3 direction, const Ray* ray, uint instance,
-                                   float extent) {
+                                 float extent) {
     TracedRay traced;
     traced.ray.origin = origin;
     traced.ray.direction = direction;
@@ -161,7 +162,7 @@ static inline HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState rang
 static inline uint any_hit(const Bvh* bvh, const Ray* ray, float t_max) {
     HitState state = hit_state(0.0f, t_max);
     traverse(bvh, ray, &state, true);
-    return state.occlusion & SAHL_HIT_OPAQUE ? SAHL_HIT_OPAQUE : state.occlusion;
+    return strongest_occlusion(state.occlusion);
 }
 
 #endif

@@ -22,15 +22,14 @@
 #define SAHL_CHILD_END 0xffffffffu
 #define SAHL_CHILD_LEAVE 0xfffffffeu
 
-/// The rays of a stream and what takes their hits: a batch's rays and hits (ray_batch.h), or for any hit a list
-/// of shadow rays.
+/// The rays of a stream and what takes their hits: those of a batch (ray_batch.h), or for any hit a list.
 typedef struct {
     const global float* rays;
     const global uint* ray_ids;
-    const global float* t_max;
     global float* hits;
     global uint* hit_ids;
     uint capacity;
+    ShadowRays* shadow_rays;
 } RaySource;
 
 /// A ray in flight. What node steps need is one cache line.
@@ -45,8 +44,8 @@ typedef struct {
     HitState state;
 } __attribute__((aligned(64))) StreamRay;
 
-/// Waiting children and where the ray enters them. An odd number of cache lines, so that the stacks' bottoms do
-/// not compete for the same sets of the cache.
+/// Waiting children and where the ray enters them. An odd number of cache lines, so that the stacks' bottoms
+/// do not compete for the same sets of the cache.
 typedef struct {
     uint child[SAHL_LEVELS * SAHL_STACK_SIZE];
     float entry[SAHL_LEVELS * SAHL_STACK_SIZE];
@@ -70,14 +69,15 @@ static inline void drop_hidden(StreamRay* ray, const StreamStack* stack) {
     ray->size = size;
 }
 
-static inline Ray source_ray(const RaySource* source, uint index) {
-    return load_ray(source->rays, source->ray_ids, source->capacity, index);
+static inline Ray source_ray(const RaySource* source, uint index, bool any_hit) {
+    return any_hit ? shadow_ray(source->shadow_rays, index)
+                   : load_ray(source->rays, source->ray_ids, source->capacity, index);
 }
 
 static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index, StreamRay* ray,
-                             StreamStack* stack) {
-    const Ray from = source_ray(source, index);
-    const float t_max = source->t_max[index];
+                             StreamStack* stack, bool any_hit) {
+    const Ray from = source_ray(source, index, any_hit);
+    const float t_max = any_hit ? source->shadow_rays->t_max[index] : INFINITY;
     const TracedRay traced = traced_ray(from.origin, from.direction, &from, SAHL_WORLD, bvh->extent);
     put_into_space(ray, &traced);
     ray->state = hit_state(0.0f, t_max);
@@ -92,7 +92,7 @@ static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index
 
 static inline void finish_ray(const RaySource* source, const StreamRay* ray, bool any_hit) {
     if (any_hit) {
-        source->hit_ids[ray->index] = ray->state.occlusion & SAHL_HIT_OPAQUE ? SAHL_HIT_OPAQUE : ray->state.occlusion;
+        source->shadow_rays->occlusion[ray->index] = strongest_occlusion(ray->state.occlusion);
     } else {
         store_hit(source->hits, source->hit_ids, source->capacity, ray->index, &ray->state);
     }
@@ -109,8 +109,8 @@ static inline void visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack
 
 /// Goes into the instance that was on top of the stack, or comes back out of it.
 static inline void change_space(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
-                                uint child) {
-    const Ray in_world = source_ray(source, ray->index);
+                                uint child, bool any_hit) {
+    const Ray in_world = source_ray(source, ray->index, any_hit);
     if (child == SAHL_CHILD_LEAVE) {
         const TracedRay traced =
             traced_ray(in_world.origin, in_world.direction, &in_world, SAHL_WORLD, bvh->extent);
@@ -134,7 +134,7 @@ static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay
                               bool any_hit) {
     const uint child = stack->child[--ray->size];
     if (child_kind(child) >= SAHL_KIND_INSTANCE) {
-        change_space(bvh, source, ray, stack, child);
+        change_space(bvh, source, ray, stack, child, any_hit);
     } else {
         intersect_leaf(bvh, child, &ray->ray, &ray->shear, &ray->boxes, &ray->state, any_hit);
         ray->cull_t = ray->state.t * SAHL_CULL_SLACK;
@@ -154,7 +154,7 @@ static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint fi
     uint node_count = 0, leaf_count = 0;
     uint next = first;
     for (uint place = 0; place < SAHL_STREAM_WIDTH && next < end; ++place, ++next) {
-        start_ray(bvh, source, next, flight + place, stacks + place);
+        start_ray(bvh, source, next, flight + place, stacks + place, any_hit);
         at_leaf[leaf_count++] = place;
     }
     while (node_count + leaf_count != 0u) {
@@ -182,7 +182,7 @@ static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint fi
                 if (next == end) {
                     continue;
                 }
-                start_ray(bvh, source, next, ray, stacks + place);
+                start_ray(bvh, source, next, ray, stacks + place, any_hit);
                 ++next;
             } else if (top & SAHL_CHILD_LEAF) {
                 visit_leaf(bvh, source, ray, stacks + place, any_hit);
@@ -196,6 +196,12 @@ static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint fi
             leaf_count += leaf;
         }
     }
+}
+
+/// Fills list->occlusion.
+static inline void occlude_by_stream(const Bvh* bvh, ShadowRays* list) {
+    const RaySource source = {0, 0, 0, 0, 0u, list};
+    trace_stream(bvh, &source, 0u, list->count, true);
 }
 
 #endif

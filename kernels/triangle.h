@@ -83,9 +83,10 @@ static inline void intersect_triangles(const global TriangleBlock* block, const 
     TrianglePlanes planes = triangle_planes(block);
     float3 d = ray->direction, o = ray->origin;
     float4 nd = planes.normal[0] * d.x + planes.normal[1] * d.y + planes.normal[2] * d.z;
-    float4 t = (planes.normal[0] * (vload4(0, block->x) - o.x) + planes.normal[1] * (vload4(0, block->y) - o.y) +
-                planes.normal[2] * (vload4(0, block->z) - o.z)) /
-               nd;
+    float4 t =
+        (planes.normal[0] * (vload4(0, block->x) - o.x) + planes.normal[1] * (vload4(0, block->y) - o.y) +
+         planes.normal[2] * (vload4(0, block->z) - o.z)) /
+        nd;
     t = keep_to_box(t, planes.lo, planes.hi, boxes);
     lanes &= mask4((t >= state->t_min) & (t <= state->t));
     if (lanes == 0u) {

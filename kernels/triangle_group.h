@@ -39,14 +39,16 @@ static inline bool offer_triangle(const global TriangleBlock* block, uint lane, 
     for (uint k = 0; k < 3u; ++k) {
         bool backward = (octant >> k & 1u) != 0u;
         float near = backward ? ((const float*)&planes->hi[k])[lane] : ((const float*)&planes->lo[k])[lane];
-        float far_plane = backward ? ((const float*)&planes->lo[k])[lane] : ((const float*)&planes->hi[k])[lane];
+        float far_plane =
+            backward ? ((const float*)&planes->lo[k])[lane] : ((const float*)&planes->hi[k])[lane];
         enter[k] = fma((float16)(near), rays->inverse[k], rays->near_addend[k]);
         leave[k] = fma((float16)(far_plane), rays->inverse[k], rays->far_addend[k]);
         offset[k] = ((const global float*)block)[16u * k + lane] - rays->origin[k];
     }
     float16 nearest = SAHL_MAX(SAHL_MAX(enter[0], enter[1]), enter[2]);
     float16 farthest = SAHL_MIN(SAHL_MIN(leave[0], leave[1]), leave[2]);
-    float nx = ((const float*)&planes->normal[0])[lane], ny = ((const float*)&planes->normal[1])[lane], nz = ((const float*)&planes->normal[2])[lane];
+    float nx = ((const float*)&planes->normal[0])[lane], ny = ((const float*)&planes->normal[1])[lane],
+          nz = ((const float*)&planes->normal[2])[lane];
     float16 nd = nx * rays->direction[0] + ny * rays->direction[1] + nz * rays->direction[2];
     float16 t = (nx * offset[0] + ny * offset[1] + nz * offset[2]) / nd;
     t = t > nearest ? t : nearest;
@@ -126,14 +128,14 @@ static inline bool intersect_triangles16(const global TriangleBlock* block, Lazy
         float16 v = s.ax * s.cy - s.ay * s.cx;
         float16 least = SAHL_MIN(SAHL_MIN(u, v), w), greatest = SAHL_MAX(SAHL_MAX(u, v), w);
         // NaN vertices, of unused lanes, end here: both comparisons are false.
-        Lanes16 inside =
-            less_equal16((float16)(0.0f), least) | less_equal16(greatest, (float16)(0.0f));
+        Lanes16 inside = less_equal16((float16)(0.0f), least) | less_equal16(greatest, (float16)(0.0f));
         if (any16(inside)) {
             if (!planes->known) {
                 planes->of = triangle_planes(block);
                 planes->known = true;
             }
-            taken |= offer_triangle(block, lane, &planes->of, &s, u, v, w, inside, rays, pass, far, hits, any_hit);
+            taken |=
+                offer_triangle(block, lane, &planes->of, &s, u, v, w, inside, rays, pass, far, hits, any_hit);
         }
     }
     return taken;

@@ -1,5 +1,8 @@
 #include "engine/render/launches.h"
 
+#include <cstddef>
+#include <string>
+
 namespace sahl {
 namespace {
 
@@ -15,7 +18,21 @@ Launch per_block(const WaitingBatch& in_work) {
     return {compact_blocks(in_work.count), in_work.generation, in_work.count};
 }
 
+std::array<Kernel, 3> one_of_each(Program& program, const std::string& prefix) {
+    return {program.kernel(prefix + "scalar"), program.kernel(prefix + "packet"),
+            program.kernel(prefix + "stream")};
+}
+
+Kernel& chosen(std::array<Kernel, 3>& kernels, const Device& device, const WaitingBatch& in_work) {
+    return kernels[static_cast<std::size_t>(traversal_for(device, in_work.generation))];
+}
+
 }  // namespace
+
+Traversal traversal_for(const Device& device, std::uint32_t generation) {
+    if (!device.info().is_cpu) return Traversal::scalar;
+    return generation < 2 ? Traversal::packet : Traversal::stream;
+}
 
 Program build_wavefront_program(Device& device) {
     return {device, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}};
@@ -23,9 +40,9 @@ Program build_wavefront_program(Device& device) {
 
 WavefrontKernels::WavefrontKernels(Program& program)
     : generate(program.kernel("generate")),
-      intersect(program.kernel("intersect_scalar")),
+      intersect(one_of_each(program, "intersect_")),
       shade(program.kernel("shade")),
-      shadow(program.kernel("shadow_scalar")),
+      shadow(one_of_each(program, "shadow_")),
       count_children(program.kernel("count_children")),
       sum_children(program.kernel("sum_children")),
       compact(program.kernel("compact")) {}
@@ -40,9 +57,10 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    wavefront.kernels.intersect.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves,
-                                       scene.polygon_vertices, scene.instances, scene.constants, batch.rays,
-                                       batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
+    Kernel& intersect = chosen(wavefront.kernels.intersect, wavefront.device, in_work);
+    intersect.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices,
+                     scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
+                     in_work.count);
 }
 
 void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out) {
@@ -59,10 +77,11 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    wavefront.kernels.shadow.launch(
-        per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-        scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids, q.shadow_surfaces,
-        q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
+    Kernel& shadow = chosen(wavefront.kernels.shadow, wavefront.device, in_work);
+    shadow.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices,
+                  scene.instances, scene.primitives, scene.materials, scene.lights, scene.constants,
+                  q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity,
+                  in_work.count);
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {

@@ -1,6 +1,7 @@
 // The kernels of a wave with their arguments: one function a kernel.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "engine/device/program.h"
@@ -13,12 +14,27 @@ namespace sahl {
 /// Of which WavefrontKernels are made.
 Program build_wavefront_program(Device& device);
 
-/// The kernels of kernels/*.cl.
+/// Ways of traversal (kernels/traverse_*.h). Hits are the same bits whichever it is.
+enum class Traversal : std::uint8_t {
+    scalar,  ///< ray by ray: any device
+    packet,  ///< for rays that go much the same way, on CPUs
+    stream,  ///< for rays that go any way, on CPUs
+};
+
+/// The kernels of kernels/*.cl. What no launch asks for is never compiled.
 struct WavefrontKernels {
     explicit WavefrontKernels(Program& program);
 
-    Kernel generate, intersect, shade, shadow, count_children, sum_children, compact;
+    Kernel generate;
+    std::array<Kernel, 3> intersect;  ///< by Traversal
+    Kernel shade;
+    std::array<Kernel, 3> shadow;  ///< by Traversal
+    Kernel count_children, sum_children, compact;
 };
+
+/// The way that suits a generation's rays and their shadow rays: those of the camera and the first that
+/// surfaces reflect and transmit keep together, later ones part.
+Traversal traversal_for(const Device& device, std::uint32_t generation);
 
 /// What the launches work with; all of it outlives them.
 struct Wavefront {

@@ -21,11 +21,12 @@ kernel void powers(const global float* x, const global float* n, global float* o
     }
 }
 kernel void products(const global float4* in, global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) { out[i] = difference_of_products(in[i].x, in[i].y, in[i].z, in[i].w); }
+    TEST_FOR_EACH(i, count) { out[i] = difference_of_products(in[i].xxxx, in[i].yyyy, in[i].zzzz, in[i].wwww).x; }
 }
 kernel void vectors(const global float4* a, const global float4* b, global float* out, const uint count) {
     TEST_FOR_EACH(i, count) {
-        float3 n = normalize3(a[i].xyz), c = accurate_cross3(a[i].xyz, b[i].xyz);
+        float3 n = normalize3(a[i].xyz);
+        float3 c = difference_of_products(a[i].yzxx, b[i].zxyy, a[i].zxyy, b[i].yzxx).xyz;
         vstore3(n, 4u * i, out);
         vstore3(c, 4u * i + 1u, out);
         vstore3(cross3(a[i].xyz, b[i].xyz), 4u * i + 2u, out);
