@@ -57,7 +57,7 @@ nlohmann::ordered_json range_json(const Spread& spread) { return {spread.min, sp
 void print_head() {
     fmt::print(
         "Mrays/s, medians; the ratio's spread over the repetitions; rays that differ from Embree's\n\n"
-        "{:<13}{:<10}{:>8}  {:>7} {:<7} {:>7} {:<34}{:>5} {:<12}{:>7}{:>8}\n",
+        "{:<13}{:<10}{:>8}  {:>7} {:<7} {:>7} {:<38}{:>5} {:<12}{:>7}{:>8}\n",
         "scene", "rays", "count", "Sahl", "kernel", "Embree", "by", "ratio", "spread", "robust", "differ");
     std::fflush(stdout);
 }
@@ -65,7 +65,7 @@ void print_head() {
 void print_cell(const TraversalCell& cell) {
     const Runs &sahl = best_of(cell.sahl), &embree = best_of(cell.embree);
     const Spread spread = ratio_spread(cell, cell.embree);
-    fmt::print("{:<13}{:<10}{:>8}  {:>7.2f} {:<7} {:>7.2f} {:<34}{:>5.2f} {:<12}{:>7}{:>8}\n", cell.scene,
+    fmt::print("{:<13}{:<10}{:>8}  {:>7.2f} {:<7} {:>7.2f} {:<38}{:>5.2f} {:<12}{:>7}{:>8}\n", cell.scene,
                cell.rays, cell.count, mrays(cell, sahl), sahl.name, mrays(cell, embree),
                is_mesh(cell) ? embree.name : fmt::format("{}, {}", embree.name, cell.geometry),
                ratio(cell, cell.embree), fmt::format("{:.2f}..{:.2f}", spread.min, spread.max),
