@@ -19,11 +19,6 @@ std::string kernel_source() {
 
 }  // namespace
 
-std::span<const SahlKernel> sahl_kernels() {
-    static constexpr SahlKernel kernels[] = {{"scalar", 0}};
-    return kernels;
-}
-
 SahlTracer::SahlTracer(const DeviceOptions& options)
     : device_(options), program_(Program::from_text(device_, kernel_source())) {}
 
@@ -70,12 +65,13 @@ Kernel& SahlTracer::kernel_of(const std::string& name) {
                                    : kernels_.emplace(name, program_.kernel(name)).first->second;
 }
 
-double SahlTracer::trace(const SahlKernel& way, Clock clock) {
+double SahlTracer::trace(const std::string& way, Clock clock) {
     const DeviceScene& scene = *scene_;
     Batch& batch = *batch_;
-    const std::uint32_t per_item = way.rays_per_item == 0 ? device_.rays_per_item() : way.rays_per_item;
-    const Launch launch{(batch.count + per_item - 1) / per_item, 0, batch.count};
-    Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + std::string(way.name));
+    // As the engine launches them all; kernels that take more rays leave items without work.
+    const Launch launch{(batch.count + device_.rays_per_item() - 1) / device_.rays_per_item(), 0,
+                        batch.count};
+    Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + way);
     const double start = seconds_now(clock);
     if (batch.occlusion) {
         kernel.launch(launch, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,

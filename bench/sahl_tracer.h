@@ -1,10 +1,10 @@
 // Rays through the engine's traversal kernels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,13 +15,8 @@
 
 namespace sahl::bench {
 
-/// A way of traversal: kernels intersect_<name> and occluded_<name>.
-struct SahlKernel {
-    const char* name;
-    std::uint32_t rays_per_item;  ///< 0: as many as the device takes for kernels that go ray by ray
-};
-
-std::span<const SahlKernel> sahl_kernels();
+/// Ways of traversal: kernels intersect_<name> and occluded_<name>.
+inline constexpr std::array sahl_kernels{"scalar", "packet", "stream"};
 
 class SahlTracer {
 public:
@@ -36,8 +31,8 @@ public:
 
     void set_rays(const RaySet& rays);
 
-    /// Traces all rays; returns the seconds from launch to finish.
-    double trace(const SahlKernel& kernel, Clock clock = Clock::wall);
+    /// Traces all rays by the way of that name; returns the seconds from launch to finish.
+    double trace(const std::string& way, Clock clock = Clock::wall);
 
     /// What the last trace() found.
     std::vector<RayHit> hits();

@@ -1,9 +1,7 @@
 // Closest hits are the engine's own kernels. Its shadow kernels compute light as well: here is what they do
-// of traversal, one ray from a batch each.
+// of traversal, on rays of a batch.
 
 #include "kernels/intersect.cl"
-#include "kernels/ray_batch.h"
-#include "kernels/traverse_scalar.h"
 
 kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* leaves,
                             const global float* polygon_vertices, const global DeviceInstance* instances,
@@ -14,5 +12,51 @@ kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* lea
     SAHL_FOR_EACH_RAY(i, count) {
         Ray ray = load_ray(rays, ray_ids, capacity, i);
         occlusion[i] = any_hit(&bvh, &ray, t_max[i]);
+    }
+}
+
+/// Rays first.. of the batch as a list, as many as one holds.
+static inline void gather_rays(ShadowRays* list, const global float* rays, const global uint* ray_ids,
+                               const global float* t_max, uint capacity, uint first, uint count) {
+    list->count = 0;
+    for (uint i = first; i < SAHL_MIN(first + SAHL_SHADOW_RAYS, count); ++i) {
+        const Ray ray = load_ray(rays, ray_ids, capacity, i);
+        add_shadow_ray(list, &ray, t_max[i]);
+    }
+}
+
+static inline void store_occlusions(const ShadowRays* list, global uint* occlusion, uint first) {
+    for (uint k = 0; k < list->count; ++k) {
+        occlusion[first + k] = list->occlusion[k];
+    }
+}
+
+kernel void occluded_packet(const global BvhNode* nodes, const global uchar* leaves,
+                            const global float* polygon_vertices, const global DeviceInstance* instances,
+                            const SceneConstants scene, const global float* rays, const global uint* ray_ids,
+                            const global float* t_max, global uint* occlusion, const uint capacity,
+                            const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        ShadowRays list;
+        gather_rays(&list, rays, ray_ids, t_max, capacity, first, count);
+        occlude_by_packets(&bvh, &list);
+        store_occlusions(&list, occlusion, first);
+    }
+}
+
+kernel void occluded_stream(const global BvhNode* nodes, const global uchar* leaves,
+                            const global float* polygon_vertices, const global DeviceInstance* instances,
+                            const SceneConstants scene, const global float* rays, const global uint* ray_ids,
+                            const global float* t_max, global uint* occlusion, const uint capacity,
+                            const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        ShadowRays list;
+        gather_rays(&list, rays, ray_ids, t_max, capacity, first, count);
+        occlude_by_stream(&bvh, &list);
+        store_occlusions(&list, occlusion, first);
     }
 }

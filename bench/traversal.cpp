@@ -114,8 +114,8 @@ void run(const Options& options) {
 }
 
 void choose_kernels(Options& options) {
-    for (const SahlKernel& kernel : sahl_kernels()) {
-        if (is_wanted(options.kernels, kernel.name)) options.measurement.kernels.push_back(kernel);
+    for (const char* kernel : sahl_kernels) {
+        if (is_wanted(options.kernels, kernel)) options.measurement.kernels.emplace_back(kernel);
     }
 }
 
@@ -143,7 +143,7 @@ void add_options(CLI::App& app, Options& options) {
     add_selection(app, "--scene", options.scenes, "These scenes alone", scenes);
     add_selection(app, "--rays", options.rays, "These rays alone", {ray_kinds.begin(), ray_kinds.end()});
     add_selection(app, "--kernel", options.kernels, "These of Sahl's kernels alone",
-                  names_of(sahl_kernels()));
+                  {sahl_kernels.begin(), sahl_kernels.end()});
     app.add_option("--size", options.size, "Camera rays are size x size")
         ->check(CLI::Range(8, 8192))
         ->capture_default_str();

@@ -58,22 +58,22 @@ std::vector<RayHit> best_hits(const std::vector<EmbreeWay>& ways, const std::vec
 }
 
 /// Launches each kernel until PoCL has compiled it and its memory is in place.
-void warm_up(SahlTracer& sahl, const std::vector<SahlKernel>& kernels, const RaySet& rays) {
+void warm_up(SahlTracer& sahl, const std::vector<std::string>& kernels, const RaySet& rays) {
     std::vector<std::uint32_t> first;
-    for (const SahlKernel& kernel : kernels) {
+    for (const std::string& kernel : kernels) {
         for (int i = 0; i < 2; ++i) sahl.trace(kernel);
         if (first.empty()) first = sahl.record();
         if (sahl.record() != first)
             throw Error(ExitCode::internal,
-                        fmt::format("kernels {} and {} do not agree bit by bit on {} rays",
-                                    kernels.front().name, kernel.name, rays.kind));
+                        fmt::format("kernels {} and {} do not agree bit by bit on {} rays", kernels.front(),
+                                    kernel, rays.kind));
     }
 }
 
 /// What both sides name as the closest hits of occlusion rays that differ; of other rays the hits themselves.
 Differences explain(const Scene& scene, const RaySet& rays, const std::vector<std::size_t>& places,
                     const std::vector<RayHit>& sahl_hits, const std::vector<RayHit>& embree_hits,
-                    SahlTracer& sahl, const SahlKernel& kernel, RTCScene embree) {
+                    SahlTracer& sahl, const std::string& kernel, RTCScene embree) {
     Differences differences;
     RaySet closest = select_rays(rays, places);
     closest.occlusion = false;
@@ -116,7 +116,7 @@ TraversalCell measure_cell(const BenchScene& scene, const RaySet& rays, SahlTrac
         embree.robust != nullptr ? fastest_ways(layouts, embree.robust, how.clock) : std::vector<EmbreeWay>{};
     cell.embree = runs_of(fast, rays.occlusion);
     cell.robust = runs_of(robust, rays.occlusion);
-    for (const SahlKernel& kernel : how.kernels) cell.sahl.push_back({kernel.name, {}});
+    for (const std::string& kernel : how.kernels) cell.sahl.push_back({kernel, {}});
     for (int repetition = 0; repetition < how.repetitions; ++repetition) {
         for (std::size_t i = 0; i < fast.size(); ++i)
             cell.embree[i].seconds.push_back(fast[i].trace(layouts, how.clock));

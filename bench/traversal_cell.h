@@ -42,7 +42,7 @@ const Runs& best_of(const std::vector<Runs>& runs);
 
 /// How the cells are measured.
 struct Measurement {
-    std::vector<SahlKernel> kernels;
+    std::vector<std::string> kernels;  ///< of sahl_kernels
     int repetitions = 7;
     Clock clock = Clock::wall;
 };
