@@ -12,6 +12,10 @@
 #include "kernels/math.h"
 #include "kernels/simd.h"
 
+// A curved surface's distance may be too short by its own rounding: boxes are culled only beyond
+// this much more, and their addends leave room for the rest.
+#define SAHL_CULL_SLACK (1.0f + 0x1p-20f)
+
 typedef struct {
     const global BvhNode* nodes;
     const global uchar* leaves;
@@ -107,34 +111,22 @@ static inline uint push_children(const global BvhNode* node, float8 enter, float
 /// arithmetic as a node's, and fma is monotonic, so the result lies within every box around this
 /// one: a flat primitive whose distance is kept to its own box is never culled wrongly, however
 /// badly a grazing ray has defined that distance.
-#define SAHL_DEFINE_KEEP_TO_BOX(FLOAT)                                                                     \
-    SAHL_OVERLOAD FLOAT keep_to_box(FLOAT t, const FLOAT* lo, const FLOAT* hi, const RayBoxTest* test) {   \
-        const float* r = test->inverse;                                                                    \
-        const float* n = test->near_addend;                                                                \
-        const float* f = test->far_addend;                                                                 \
-        FLOAT near_x = lo[0], far_x = hi[0], near_y = lo[1], far_y = hi[1], near_z = lo[2], far_z = hi[2]; \
-        if (test->octant & 1u) {                                                                           \
-            near_x = hi[0];                                                                                \
-            far_x = lo[0];                                                                                 \
-        }                                                                                                  \
-        if (test->octant & 2u) {                                                                           \
-            near_y = hi[1];                                                                                \
-            far_y = lo[1];                                                                                 \
-        }                                                                                                  \
-        if (test->octant & 4u) {                                                                           \
-            near_z = hi[2];                                                                                \
-            far_z = lo[2];                                                                                 \
-        }                                                                                                  \
-        FLOAT enter_x = fma(near_x, (FLOAT)(r[0]), (FLOAT)(n[0]));                                         \
-        FLOAT enter_y = fma(near_y, (FLOAT)(r[1]), (FLOAT)(n[1]));                                         \
-        FLOAT enter_z = fma(near_z, (FLOAT)(r[2]), (FLOAT)(n[2]));                                         \
-        FLOAT leave_x = fma(far_x, (FLOAT)(r[0]), (FLOAT)(f[0]));                                          \
-        FLOAT leave_y = fma(far_y, (FLOAT)(r[1]), (FLOAT)(f[1]));                                          \
-        FLOAT leave_z = fma(far_z, (FLOAT)(r[2]), (FLOAT)(f[2]));                                          \
-        FLOAT nearest = SAHL_MAX(SAHL_MAX(enter_x, enter_y), enter_z);                                     \
-        FLOAT farthest = SAHL_MIN(SAHL_MIN(leave_x, leave_y), leave_z);                                    \
-        t = t > nearest ? t : nearest;                                                                     \
-        return t < farthest ? t : farthest;                                                                \
+//
+// Without looking at the ray's signs, which no branch predictor knows: fma() is monotonic, so the lesser of
+// the two planes' results is that of the near plane.
+#define SAHL_DEFINE_KEEP_TO_BOX(FLOAT)                                                                   \
+    SAHL_OVERLOAD FLOAT keep_to_box(FLOAT t, const FLOAT* lo, const FLOAT* hi, const RayBoxTest* test) { \
+        FLOAT nearest, farthest;                                                                         \
+        _Pragma("unroll") for (uint k = 0; k < 3u; ++k) {                                                \
+            FLOAT r = test->inverse[k], near = test->near_addend[k], far = test->far_addend[k];          \
+            FLOAT enter_lo = fma(lo[k], r, near), enter_hi = fma(hi[k], r, near);                        \
+            FLOAT leave_lo = fma(lo[k], r, far), leave_hi = fma(hi[k], r, far);                          \
+            FLOAT enter = SAHL_MIN(enter_lo, enter_hi), leave = SAHL_MAX(leave_lo, leave_hi);            \
+            nearest = k == 0u ? enter : SAHL_MAX(nearest, enter);                                        \
+            farthest = k == 0u ? leave : SAHL_MIN(farthest, leave);                                      \
+        }                                                                                                \
+        t = t > nearest ? t : nearest;                                                                   \
+        return t < farthest ? t : farthest;                                                              \
     }
 SAHL_DEFINE_KEEP_TO_BOX(float)
 SAHL_DEFINE_KEEP_TO_BOX(float4)

@@ -66,13 +66,14 @@ typedef struct {
 } BvhNode;
 SAHL_STATIC_ASSERT(sizeof(BvhNode) == 256, "BvhNode is four cache lines");
 
-// Four triangles; an axis is one line: vertex 0 of the four, vertex 1, vertex 2, a spare, which
-// holds the ids for x and 1.0f for y and z. Unused lanes have NaN vertices.
+// Up to four triangles; an axis is one line: vertex 0 of the four, vertex 1, vertex 2, and four more numbers,
+// which are no denormals. Unused lanes, behind the others, have NaN vertices.
 typedef struct {
     float x[12];
     sahl_uint id[4];
     float y[12];
-    float spare_y[4];
+    float count;  // of triangles
+    float spare_y[3];
     float z[12];
     float spare_z[4];
 } TriangleBlock;

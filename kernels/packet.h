@@ -55,7 +55,7 @@ static inline uint passes_of(const RayGroup* rays, const GroupHits* hits, uint g
 /// farthest of each group. Returns the groups that have any.
 static inline uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
                               const GroupHits* hits, uint groups, const int16* pass_numbers, float16* far,
-                              float* group_far) {
+                              float16* cull_far, float* group_far) {
     const float16 infinite = INFINITY;
     PassAxes* axes = &pass->axes;
     axes->octant = number & 7u;
@@ -74,6 +74,7 @@ static inline uint begin_pass(Pass* pass, uint number, uint instance, float exte
     pass->farthest = -INFINITY;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         far[g] = -infinite;
+        cull_far[g] = -infinite;
         group_far[g] = -INFINITY;
         if (!(groups >> g & 1u)) {
             continue;
@@ -85,7 +86,8 @@ static inline uint begin_pass(Pass* pass, uint number, uint instance, float exte
         }
         present |= 1u << g;
         far[g] = select16(active, hits[g].t, -infinite);
-        group_far[g] = greatest16(far[g]);
+        cull_far[g] = far[g] * SAHL_CULL_SLACK;
+        group_far[g] = greatest16(cull_far[g]);
         pass->farthest = SAHL_MAX(pass->farthest, group_far[g]);
         for (uint k = 0; k < 3u; ++k) {
             float16 low = select16(active, group->inverse[k], infinite);

@@ -45,14 +45,14 @@ static inline uint children_of_interest(const global BvhNode* node, const Pass* 
         SAHL_MIN(SAHL_MIN(last_crossing(vload8(3u - x, planes), pass->far_origin[0], lo[0], hi[0]),
                           last_crossing(vload8(5u - y, planes), pass->far_origin[1], lo[1], hi[1])),
                  SAHL_MIN(last_crossing(vload8(7u - z, planes), pass->far_origin[2], lo[2], hi[2]),
-                          (float8)(pass->farthest * SAHL_CULL_SLACK)));
+                          (float8)(pass->farthest)));
     *entry = enter;
     return mask8_le(enter, leave);
 }
 
 /// The groups of `groups` of which a ray meets child `slot`.
 static inline uint groups_that_meet(const global BvhNode* node, uint slot, uint octant, const RayGroup* rays,
-                                    const float16* far, uint groups) {
+                                    const float16* cull_far, uint groups) {
     const global float* planes = (const global float*)node + slot;
     uint x = octant & 1u ? 24u : 0u, y = octant & 2u ? 32u : 8u, z = octant & 4u ? 40u : 16u;
     float near_x = planes[x], near_y = planes[y], near_z = planes[z];
@@ -66,10 +66,10 @@ static inline uint groups_that_meet(const global BvhNode* node, uint slot, uint 
                 SAHL_MAX(fma((float16)(near_x), group->inverse[0], group->near_addend[0]),
                          fma((float16)(near_y), group->inverse[1], group->near_addend[1])),
                 SAHL_MAX(fma((float16)(near_z), group->inverse[2], group->near_addend[2]), (float16)(0.0f)));
-            float16 leave = SAHL_MIN(SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
-                                              fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
-                                     SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]),
-                                              far[g] * SAHL_CULL_SLACK));
+            float16 leave = SAHL_MIN(
+                SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
+                         fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
+                SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]), cull_far[g]));
             met |= (uint)any16(less_equal16(enter, leave)) << g;
         }
     }
@@ -155,7 +155,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
     uint stack_groups[SAHL_LEVELS * SAHL_STACK_SIZE];
     uint waiting[SAHL_WAITING_INSTANCES], waiting_groups[SAHL_WAITING_INSTANCES];
     uint waiting_count = 0;
-    float16 far[SAHL_PACKET_GROUPS];
+    // Where ranges end, and beyond which boxes are culled: for each ray, for each group.
+    float16 far[SAHL_PACKET_GROUPS], cull_far[SAHL_PACKET_GROUPS];
     float group_far[SAHL_PACKET_GROUPS];
     int16 pass_numbers[SAHL_LEVELS][SAHL_PACKET_GROUPS];
 
@@ -203,7 +204,7 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         const uint number = lowest_lane(passes);
         Pass pass;
         uint present = begin_pass(&pass, number, instance, extent, rays, hits, groups, pass_numbers[level],
-                                  far, group_far);
+                                  far, cull_far, group_far);
         const uint octant = pass.axes.octant;
         if (size == base) {
             stack[size] = root;
@@ -214,11 +215,7 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         while (size > base && waiting_count < SAHL_WAITING_INSTANCES) {
             --size;
             const uint child = stack[size];
-            uint met = 0;
-            for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-                met |= (uint)(entries[size] <= group_far[g] * SAHL_CULL_SLACK) << g;
-            }
-            met &= stack_groups[size];
+            uint met = mask8_le((float8)(entries[size]), vload8(0, group_far)) & stack_groups[size];
             if (met == 0u) {
                 continue;
             }
@@ -232,7 +229,7 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint slot = position ^ octant;
                     uint next = node->child[slot];
                     prefetch_child(bvh, next);
-                    uint meeting = groups_that_meet(node, slot, octant, rays, far, met);
+                    uint meeting = groups_that_meet(node, slot, octant, rays, cull_far, met);
                     stack[size] = next;
                     entries[size] = ((float*)&entry)[slot];
                     stack_groups[size] = meeting;
@@ -262,7 +259,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint g = lowest_lane(met);
                     if (intersect_triangles16(block, &planes, shifted, rays + g, &pass.axes, far + g,
                                               hits + g, any_hit)) {
-                        group_far[g] = greatest16(far[g]);
+                        cull_far[g] = far[g] * SAHL_CULL_SLACK;
+                        group_far[g] = greatest16(cull_far[g]);
                         taken = true;
                     }
                 }
@@ -271,7 +269,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint g = lowest_lane(met);
                     if (intersect_leaf_by_ray(bvh, child, rays + g, far + g, hits + g, instance, extent,
                                               any_hit)) {
-                        group_far[g] = greatest16(far[g]);
+                        cull_far[g] = far[g] * SAHL_CULL_SLACK;
+                        group_far[g] = greatest16(cull_far[g]);
                         taken = true;
                     }
                 }

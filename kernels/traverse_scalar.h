@@ -18,10 +18,6 @@
 #include "kernels/sphere.h"
 #include "kernels/triangle.h"
 
-// A curved surface's distance may be too short by its own rounding: boxes are culled only beyond
-// this much more, and their addends (bvh.h) leave room for the rest.
-#define SAHL_CULL_SLACK (1.0f + 0x1p-20f)
-
 static inline uint child_kind(uint child) { return child >> SAHL_CHILD_KIND_SHIFT & SAHL_CHILD_KIND_MASK; }
 
 static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
@@ -37,11 +33,10 @@ static inline void prefetch_child(const Bvh* bvh, uint child) {
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
                                   const RayBoxTest* boxes, HitState* state, bool any_hit) {
     const global uchar* block = leaf_block(bvh, child);
-    if (__builtin_expect(child_kind(child) == SAHL_KIND_TRIANGLE, 1)) {
-        intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
-        return;
-    }
     switch (child_kind(child)) {
+        case SAHL_KIND_TRIANGLE:
+            intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
+            break;
         case SAHL_KIND_SPHERE:
             intersect_spheres((const global SphereBlock*)block, ray, state, any_hit);
             break;

@@ -129,18 +129,30 @@ static inline void change_space(const Bvh* bvh, const RaySource* source, StreamR
     ray->size += 2u;
 }
 
-/// Does what the leaf on top of the stack asks for.
-static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
-                              bool any_hit) {
-    const uint child = stack->child[--ray->size];
+/// Does what the leaf on top of the stack asks for. What is not a block of triangles is kept apart, so that
+/// it takes no registers from these.
+static __attribute__((noinline)) void visit_other_leaf(const Bvh* bvh, const RaySource* source,
+                                                       StreamRay* ray, StreamStack* stack, uint child,
+                                                       bool any_hit) {
     if (child_kind(child) >= SAHL_KIND_INSTANCE) {
         change_space(bvh, source, ray, stack, child, any_hit);
     } else {
         intersect_leaf(bvh, child, &ray->ray, &ray->shear, &ray->boxes, &ray->state, any_hit);
-        ray->cull_t = ray->state.t * SAHL_CULL_SLACK;
-        if (any_hit && (ray->state.occlusion & SAHL_HIT_OPAQUE)) {
-            ray->size = 1u;
-        }
+    }
+}
+
+static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
+                              bool any_hit) {
+    const uint child = stack->child[--ray->size];
+    if (child_kind(child) == SAHL_KIND_TRIANGLE) {
+        intersect_triangles((const global TriangleBlock*)leaf_block(bvh, child), &ray->ray, &ray->shear,
+                            &ray->boxes, &ray->state, any_hit);
+    } else {
+        visit_other_leaf(bvh, source, ray, stack, child, any_hit);
+    }
+    ray->cull_t = ray->state.t * SAHL_CULL_SLACK;
+    if (any_hit && (ray->state.occlusion & SAHL_HIT_OPAQUE)) {
+        ray->size = 1u;
     }
     drop_hidden(ray, stack);
 }

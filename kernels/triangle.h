@@ -45,7 +45,7 @@ typedef struct {
     float4 lo[3], hi[3];
 } TrianglePlanes;
 
-static inline TrianglePlanes triangle_planes(const global TriangleBlock* block) {
+SAHL_INLINE TrianglePlanes triangle_planes(const global TriangleBlock* block) {
     TrianglePlanes planes;
     float4 e1[3], e2[3];
 #pragma unroll
@@ -63,9 +63,8 @@ static inline TrianglePlanes triangle_planes(const global TriangleBlock* block) 
     return planes;
 }
 
-static inline void intersect_triangles(const global TriangleBlock* block, const Ray* ray,
-                                       const RayShear* shear, const RayBoxTest* boxes, HitState* state,
-                                       bool any_hit) {
+SAHL_INLINE void intersect_triangles(const global TriangleBlock* block, const Ray* ray, const RayShear* shear,
+                                     const RayBoxTest* boxes, HitState* state, bool any_hit) {
     const global float* axes = (const global float*)block;
     float16 z = vload16(shear->kz, axes) - shear->oz;
     float16 x = fma(z, (float16)(shear->sx), vload16(shear->kx, axes) - shear->ox);

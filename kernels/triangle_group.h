@@ -27,6 +27,39 @@ typedef struct {
     float16 ax, ay, bx, by, cx, cy;
 } ShearedTriangle;
 
+/// Where rays of one octant meet the plane of triangle `lane`, kept to the triangle's box (keep_to_box());
+/// *nd: the product of the plane's normal with their directions.
+static inline float16 plane_distance(const global TriangleBlock* block, uint lane,
+                                     const TrianglePlanes* planes, const RayGroup* rays, const PassAxes* pass,
+                                     float16* nd) {
+    const uint octant = pass->octant;
+    const float nx = ((const float*)&planes->normal[0])[lane];
+    const float ny = ((const float*)&planes->normal[1])[lane];
+    const float nz = ((const float*)&planes->normal[2])[lane];
+    *nd = nx * rays->direction[0] + ny * rays->direction[1] + nz * rays->direction[2];
+    float16 height;
+    if (pass->common_origin) {
+        height = nx * (block->x[lane] - pass->origin[0]) + ny * (block->y[lane] - pass->origin[1]) +
+                 nz * (block->z[lane] - pass->origin[2]);
+    } else {
+        height = nx * (block->x[lane] - rays->origin[0]) + ny * (block->y[lane] - rays->origin[1]) +
+                 nz * (block->z[lane] - rays->origin[2]);
+    }
+    float16 t = height / *nd;
+    float16 nearest, farthest;
+#pragma unroll
+    for (uint k = 0; k < 3u; ++k) {
+        const bool backward = (octant >> k & 1u) != 0u;
+        const float lo = ((const float*)&planes->lo[k])[lane], hi = ((const float*)&planes->hi[k])[lane];
+        float16 enter = fma((float16)(backward ? hi : lo), rays->inverse[k], rays->near_addend[k]);
+        float16 leave = fma((float16)(backward ? lo : hi), rays->inverse[k], rays->far_addend[k]);
+        nearest = k == 0u ? enter : SAHL_MAX(nearest, enter);
+        farthest = k == 0u ? leave : SAHL_MIN(farthest, leave);
+    }
+    t = t > nearest ? t : nearest;
+    return t < farthest ? t : farthest;
+}
+
 /// Triangle `lane` of the block for rays of one octant and shear, whose edges `s` are seen by the rays
 /// `lanes`. `far`: where each ray's range ends, -inf for those that are not to be tested.
 /// Returns whether a hit was taken.
@@ -34,26 +67,8 @@ static inline bool offer_triangle(const global TriangleBlock* block, uint lane, 
                                   const ShearedTriangle* s, float16 u, float16 v, float16 w, Lanes16 lanes,
                                   const RayGroup* rays, const PassAxes* pass, float16* far, GroupHits* hits,
                                   bool any_hit) {
-    const uint octant = pass->octant;
-    float16 enter[3], leave[3], offset[3];
-    for (uint k = 0; k < 3u; ++k) {
-        bool backward = (octant >> k & 1u) != 0u;
-        float near = backward ? ((const float*)&planes->hi[k])[lane] : ((const float*)&planes->lo[k])[lane];
-        float far_plane =
-            backward ? ((const float*)&planes->lo[k])[lane] : ((const float*)&planes->hi[k])[lane];
-        enter[k] = fma((float16)(near), rays->inverse[k], rays->near_addend[k]);
-        leave[k] = fma((float16)(far_plane), rays->inverse[k], rays->far_addend[k]);
-        offset[k] = ((const global float*)block)[16u * k + lane] - rays->origin[k];
-    }
-    float16 nearest = SAHL_MAX(SAHL_MAX(enter[0], enter[1]), enter[2]);
-    float16 farthest = SAHL_MIN(SAHL_MIN(leave[0], leave[1]), leave[2]);
-    float nx = ((const float*)&planes->normal[0])[lane], ny = ((const float*)&planes->normal[1])[lane],
-          nz = ((const float*)&planes->normal[2])[lane];
-    float16 nd = nx * rays->direction[0] + ny * rays->direction[1] + nz * rays->direction[2];
-    float16 t = (nx * offset[0] + ny * offset[1] + nz * offset[2]) / nd;
-    t = t > nearest ? t : nearest;
-    t = t < farthest ? t : farthest;
-
+    float16 nd;
+    const float16 t = plane_distance(block, lane, planes, rays, pass, &nd);
     uint id = block->id[lane];
     int primitive = (int)(id & SAHL_ID_MASK);
     lanes &= less16((float16)(0.0f), t) & come_before(hits, *far, t, primitive, (int)pass->instance);
@@ -104,7 +119,8 @@ static inline bool intersect_triangles16(const global TriangleBlock* block, Lazy
     float16 ox = rays->origin[pass->kx], oy = rays->origin[pass->ky], oz = rays->origin[pass->kz];
     float16 sx = rays->shear_x, sy = rays->shear_y;
     bool taken = false;
-    for (uint lane = 0; lane < SAHL_BLOCK_WIDTH; ++lane) {
+    const uint count = (uint)block->count;
+    for (uint lane = 0; lane < count; ++lane) {
         ShearedTriangle s;
         if (pass->common_origin) {
             const float* p = shifted + lane;
@@ -127,7 +143,6 @@ static inline bool intersect_triangles16(const global TriangleBlock* block, Lazy
         float16 u = s.cx * s.by - s.cy * s.bx;
         float16 v = s.ax * s.cy - s.ay * s.cx;
         float16 least = SAHL_MIN(SAHL_MIN(u, v), w), greatest = SAHL_MAX(SAHL_MAX(u, v), w);
-        // NaN vertices, of unused lanes, end here: both comparisons are false.
         Lanes16 inside = less_equal16((float16)(0.0f), least) | less_equal16(greatest, (float16)(0.0f));
         if (any16(inside)) {
             if (!planes->known) {

@@ -30,6 +30,7 @@ void pack_triangles(const Scene& scene, const LoweredScene& lowered, const BvhLe
     std::fill(std::begin(block.x), std::end(block.x), nan);
     std::fill(std::begin(block.y), std::end(block.y), nan);
     std::fill(std::begin(block.z), std::end(block.z), nan);
+    block.count = static_cast<float>(leaf.count);
     std::fill(std::begin(block.spare_y), std::end(block.spare_y), 1.0F);
     std::fill(std::begin(block.spare_z), std::end(block.spare_z), 1.0F);
     fill_ids(block);
