@@ -37,12 +37,19 @@ kernel void occluded_packet(const global BvhNode* nodes, const global uchar* lea
                             const global float* t_max, global uint* occlusion, const uint capacity,
                             const uint count) {
     const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
-    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    const uint first = (uint)get_global_id(0) * SAHL_PACKET_RAYS;
     if (first < count) {
-        ShadowRays list;
-        gather_rays(&list, rays, ray_ids, t_max, capacity, first, count);
-        occlude_by_packets(&bvh, &list);
-        store_occlusions(&list, occlusion, first);
+        const uint rays_here = SAHL_MIN(count - first, SAHL_PACKET_RAYS);
+        Packet packet;
+        load_packet(&packet, rays, ray_ids, capacity, first, count);
+        for (uint k = 0; k < rays_here; ++k) {
+            ((float*)&packet.hits[k / 16u].t)[k % 16u] = t_max[first + k];
+        }
+        trace_packet(&bvh, &packet, true);
+        for (uint k = 0; k < rays_here; ++k) {
+            occlusion[first + k] =
+                strongest_occlusion(((const uint*)&packet.hits[k / 16u].occlusion)[k % 16u]);
+        }
     }
 }
 

@@ -22,6 +22,7 @@ typedef struct {
     PassAxes axes;
     float inverse_lo[3], inverse_hi[3];   // intervals over the rays
     float near_origin[3], far_origin[3];  // the origins that make near planes nearest, far ones farthest
+    float margin[3];                      // by which boxes grow for the tests of sixteen rays
     float farthest;                       // of the groups' ranges
 } Pass;
 
@@ -108,8 +109,10 @@ static inline uint begin_pass(Pass* pass, uint number, uint instance, float exte
         pass->inverse_lo[k] = least16(inverse_lo[k]);
         pass->inverse_hi[k] = greatest16(inverse_hi[k]);
         float lo = least16(origin_lo[k]), hi = greatest16(origin_hi[k]);
-        // Outward by what covers the rounding here and of the primitives' tests (see bvh.h).
-        float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
+        // Outward by what covers the rounding here and of the primitives' tests (see bvh.h). A box that has
+        // grown by twice that is entered before, and left behind, where RayBoxTest has it.
+        const float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
+        pass->margin[k] = 2.0f * e;
         bool backward = (axes->octant >> k & 1u) != 0u;
         pass->near_origin[k] = backward ? lo - e : hi + e;
         pass->far_origin[k] = backward ? hi + e : lo - e;

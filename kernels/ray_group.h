@@ -10,9 +10,9 @@
 /// RayBoxTest and RayShear).
 typedef struct {
     float16 origin[3], direction[3];
-    float16 inverse[3], near_addend[3], far_addend[3];
-    float16 shear_x, shear_y;  // for the axes of the pass that is under way
-    int16 exclude;             // the primitive of this tree that they start on, or SAHL_NO_PRIMITIVE
+    float16 inverse[3], addend[3], slack[3];  // RayBoxTest's addends are addend - slack and addend + slack
+    float16 shear_x, shear_y;                 // for the axes of the pass that is under way
+    int16 exclude;  // the primitive of this tree that they start on, or SAHL_NO_PRIMITIVE
 } RayGroup;
 
 /// What the rays have met so far: hits with 0 < t, ordered as in HitState.
@@ -53,8 +53,8 @@ static inline void prepare_box_tests(RayGroup* rays, float extent) {
         float16 o = rays->origin[axis];
         float16 e = (fabs(o) + extent) * 0x1p-20f * fabs(r);
         rays->inverse[axis] = r;
-        rays->near_addend[axis] = -(o * r) - e;
-        rays->far_addend[axis] = -(o * r) + e;
+        rays->addend[axis] = -(o * r);
+        rays->slack[axis] = e;
     }
 }
 

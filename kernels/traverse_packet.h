@@ -50,26 +50,46 @@ static inline uint children_of_interest(const global BvhNode* node, const Pass* 
     return mask8_le(enter, leave);
 }
 
-/// The groups of `groups` of which a ray meets child `slot`.
-static inline uint groups_that_meet(const global BvhNode* node, uint slot, uint octant, const RayGroup* rays,
-                                    const float16* cull_far, uint groups) {
+/// The groups of `groups` of which a ray meets child `slot`. Boxes grow by the pass's margin instead of
+/// having each ray's own, as loading those would take as long as all the rest.
+static inline uint groups_that_meet(const global BvhNode* node, uint slot, const Pass* pass,
+                                    const RayGroup* rays, const float16* cull_far, uint groups) {
     const global float* planes = (const global float*)node + slot;
-    uint x = octant & 1u ? 24u : 0u, y = octant & 2u ? 32u : 8u, z = octant & 4u ? 40u : 16u;
-    float near_x = planes[x], near_y = planes[y], near_z = planes[z];
-    float far_x = planes[24u - x], far_y = planes[40u - y], far_z = planes[56u - z];
+    float near[3], far[3];
+#pragma unroll
+    for (uint k = 0; k < 3u; ++k) {
+        const bool backward = (pass->axes.octant >> k & 1u) != 0u;
+        const float lo = planes[8u * k] - pass->margin[k], hi = planes[24u + 8u * k] + pass->margin[k];
+        const float origin = pass->axes.common_origin ? pass->axes.origin[k] : 0.0f;
+        near[k] = (backward ? hi : lo) - origin;
+        far[k] = (backward ? lo : hi) - origin;
+    }
     uint met = 0;
+    if (pass->axes.common_origin) {
+#pragma unroll
+        for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
+            if (groups >> g & 1u) {
+                const float16* r = rays[g].inverse;
+                float16 enter = SAHL_MAX(SAHL_MAX(near[0] * r[0], near[1] * r[1]),
+                                         SAHL_MAX(near[2] * r[2], (float16)(0.0f)));
+                float16 leave =
+                    SAHL_MIN(SAHL_MIN(far[0] * r[0], far[1] * r[1]), SAHL_MIN(far[2] * r[2], cull_far[g]));
+                met |= (uint)any16(less_equal16(enter, leave)) << g;
+            }
+        }
+        return met;
+    }
 #pragma unroll
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         if (groups >> g & 1u) {
-            const RayGroup* group = rays + g;
-            float16 enter = SAHL_MAX(
-                SAHL_MAX(fma((float16)(near_x), group->inverse[0], group->near_addend[0]),
-                         fma((float16)(near_y), group->inverse[1], group->near_addend[1])),
-                SAHL_MAX(fma((float16)(near_z), group->inverse[2], group->near_addend[2]), (float16)(0.0f)));
-            float16 leave = SAHL_MIN(
-                SAHL_MIN(fma((float16)(far_x), group->inverse[0], group->far_addend[0]),
-                         fma((float16)(far_y), group->inverse[1], group->far_addend[1])),
-                SAHL_MIN(fma((float16)(far_z), group->inverse[2], group->far_addend[2]), cull_far[g]));
+            const float16* r = rays[g].inverse;
+            const float16* c = rays[g].addend;
+            float16 enter =
+                SAHL_MAX(SAHL_MAX(fma((float16)(near[0]), r[0], c[0]), fma((float16)(near[1]), r[1], c[1])),
+                         SAHL_MAX(fma((float16)(near[2]), r[2], c[2]), (float16)(0.0f)));
+            float16 leave =
+                SAHL_MIN(SAHL_MIN(fma((float16)(far[0]), r[0], c[0]), fma((float16)(far[1]), r[1], c[1])),
+                         SAHL_MIN(fma((float16)(far[2]), r[2], c[2]), cull_far[g]));
             met |= (uint)any16(less_equal16(enter, leave)) << g;
         }
     }
@@ -229,7 +249,7 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint slot = position ^ octant;
                     uint next = node->child[slot];
                     prefetch_child(bvh, next);
-                    uint meeting = groups_that_meet(node, slot, octant, rays, cull_far, met);
+                    uint meeting = groups_that_meet(node, slot, &pass, rays, cull_far, met);
                     stack[size] = next;
                     entries[size] = ((float*)&entry)[slot];
                     stack_groups[size] = meeting;

@@ -51,8 +51,10 @@ static inline float16 plane_distance(const global TriangleBlock* block, uint lan
     for (uint k = 0; k < 3u; ++k) {
         const bool backward = (octant >> k & 1u) != 0u;
         const float lo = ((const float*)&planes->lo[k])[lane], hi = ((const float*)&planes->hi[k])[lane];
-        float16 enter = fma((float16)(backward ? hi : lo), rays->inverse[k], rays->near_addend[k]);
-        float16 leave = fma((float16)(backward ? lo : hi), rays->inverse[k], rays->far_addend[k]);
+        float16 enter =
+            fma((float16)(backward ? hi : lo), rays->inverse[k], rays->addend[k] - rays->slack[k]);
+        float16 leave =
+            fma((float16)(backward ? lo : hi), rays->inverse[k], rays->addend[k] + rays->slack[k]);
         nearest = k == 0u ? enter : SAHL_MAX(nearest, enter);
         farthest = k == 0u ? leave : SAHL_MIN(farthest, leave);
     }
