@@ -81,8 +81,9 @@ std::uint32_t block_lines(std::uint32_t kind);
 /// threads. No primitives: a root whose slots are all empty.
 /// Bounds must be finite; a box may be flat or a point. Throws Error(scene) when the leaf buffer
 /// would exceed 2^27 lines or there are more than SAHL_MAX_PRIMITIVES.
-/// A leaf holds one instance. With `corners`, of triangles that are in `primitives`, long triangles are cut:
-/// several leaves have them then, a leaf has each once, and a leaf's box is that of the parts it has.
+/// A leaf holds one instance or one polygon. With `corners`, of triangles that are in `primitives`, long
+/// triangles are cut: several leaves have them then, a leaf has each once, and a leaf's box is that of the
+/// parts it has.
 /// Sources: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies" (binning);
 /// Stich, Friedrich, Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies"; Ylitie, Karras, Laine
 /// 2017, sec. 3 (collapse to wide nodes, octant-ordered slots).

@@ -22,9 +22,10 @@ inline constexpr std::uint32_t node_visit_cost = 2;
 /// by one; an instance is a transform in double precision and a tree.
 inline constexpr std::array<std::uint32_t, kind_count> block_costs{2, 2, 3, 3, 4, 4, 3, 3, 12};
 
-/// How many primitives of a kind a leaf holds.
+/// How many primitives of a kind a leaf holds. Polygons are walked corner by corner, so that a box of its own
+/// for each costs less than a block of four whose every outline is walked.
 constexpr std::uint32_t block_width(std::size_t kind) {
-    return kind == SAHL_KIND_INSTANCE ? 1 : SAHL_BLOCK_WIDTH;
+    return kind == SAHL_KIND_INSTANCE || kind == SAHL_KIND_POLYGON ? 1 : SAHL_BLOCK_WIDTH;
 }
 
 /// The cost of testing everything, as if the primitives of a kind fill their blocks.

@@ -89,9 +89,9 @@ TEST_CASE("kinds do not share leaves even where their boxes coincide", "[bvh]") 
     for (std::uint32_t id = 0; id < 36; ++id) primitives.push_back({cube(0, 0, 0, 1), id % 9, id});
     const Bvh bvh = build_bvh(primitives);
     CHECK(walk(bvh, primitives).fault == "");
-    // Four of each of nine kinds: split by kind, every block is full, each instance is alone.
-    REQUIRE(bvh.leaves.size() == 12);
-    CHECK(bvh.leaf_lines == 3 + 2 + 4 + 4 + 3 + 4 + 4 + 4);
+    // Four of each of nine kinds: split by kind, every block is full, each polygon and instance is alone.
+    REQUIRE(bvh.leaves.size() == 15);
+    CHECK(bvh.leaf_lines == 3 + 2 + 4 + 4 + 4 * 3 + 4 + 4 + 4);
 }
 
 TEST_CASE("coinciding boxes fill their blocks in the order of ids", "[bvh]") {

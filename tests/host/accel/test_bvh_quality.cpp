@@ -70,12 +70,12 @@ TEST_CASE("the cost of eight separate blocks is in closed form", "[bvh]") {
     std::vector<BuildPrimitive> primitives;
     for (std::uint32_t id = 0; id < 32; ++id) {
         const auto at = [&](std::uint32_t bit) { return (id / 4 >> bit & 1u) != 0 ? 9.0f : 0.0f; };
-        primitives.push_back({cube(at(0), at(1), at(2), 1), SAHL_KIND_POLYGON, id});
+        primitives.push_back({cube(at(0), at(1), at(2), 1), SAHL_KIND_SOLID_CONE, id});
     }
     const Bvh bvh = build_bvh(primitives);
     REQUIRE(bvh.leaves.size() == 8);
     REQUIRE(bvh.nodes.size() == 1);
-    // The root, and eight polygon blocks of weight 2 and 1/100 of the root's area.
+    // The root, and eight blocks of solid cones, of weight 2 and 1/100 of the root's area.
     CHECK(bvh.statistics.sah_cost == Approx(1 + 8 * 2 * 0.01));
     // Each in the slot of its corner: an octant o ray starts in the corner it comes from, slot o.
     for (std::size_t slot = 0; slot < 8; ++slot) {
