@@ -10,6 +10,7 @@
 // p²d² of b² - ac is already gone; and the roots come from q = -(b ± s) so that neither is a difference
 // of near numbers. Boxes are met by the slab method (Kay and Kajiya 1986).
 #include "kernels/math.h"
+#include "kernels/simd.h"
 
 #ifndef SAHL_WIDTH
 #define SAHL_WIDTH 4
@@ -17,7 +18,6 @@
 #ifndef SAHL_OF_WIDTH
 #define SAHL_JOINED(name, width) name##width
 #define SAHL_OF_WIDTH(name, width) SAHL_JOINED(name, width)
-#define SAHL_OVERLOAD static inline __attribute__((overloadable))
 #endif
 #define Floats SAHL_OF_WIDTH(float, SAHL_WIDTH)
 #define Ints SAHL_OF_WIDTH(int, SAHL_WIDTH)
@@ -179,6 +179,15 @@ SAHL_OVERLOAD Floats cross_discs(const ObjectRays* r, Ints* inside) {
     Floats x = r->px + t * r->dx, y = r->py + t * r->dy;
     *inside = x * x + y * y <= 1.0f;
     return t + r->shift;
+}
+
+/// Through planes of unit normal n and a point p, seen from the rays' origins; *doubt: how far off that
+/// may be, by the rounding of a polygon's vertices too; NaN where rays lie in the plane. *nd = n·d.
+SAHL_OVERLOAD Floats cross_planes(Floats nx, Floats ny, Floats nz, Floats px, Floats py, Floats pz, Floats dx,
+                                  Floats dy, Floats dz, Floats origin_sum, Floats* nd, Floats* doubt) {
+    *nd = nx * dx + ny * dy + nz * dz;
+    *doubt = 0x1p-20f * (fabs(px) + fabs(py) + fabs(pz) + origin_sum) / fabs(*nd);
+    return (nx * px + ny * py + nz * pz) / *nd;
 }
 
 #undef Floats

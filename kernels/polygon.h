@@ -7,53 +7,60 @@
 #ifndef SAHL_POLYGON_H
 #define SAHL_POLYGON_H
 
+#include "kernels/crossings.h"
 #include "kernels/hit.h"
 #include "kernels/simd.h"
 #include "kernels/triangle.h"
 
-/// A vertex in the ray's shear.
-static inline float2 sheared_vertex(float3 vertex, const RayShear* shear) {
-    float z = component(vertex, shear->kz) - shear->oz;
-    return (float2)(fma(z, shear->sx, component(vertex, shear->kx) - shear->ox),
-                    fma(z, shear->sy, component(vertex, shear->ky) - shear->oy));
-}
+// What the edge from a to b, in rays' shears, adds to `inside` (whether the half-axis has been crossed an
+// odd number of times) and `on_outline`: 0 or not, of scalars and of the lanes of vectors.
+#define SAHL_DEFINE_CROSS_EDGE(Floats, Ints)                                                      \
+    SAHL_OVERLOAD void cross_edge(Floats ax, Floats ay, Floats bx, Floats by, Ints* inside,       \
+                                  Ints* on_outline) {                                             \
+        Floats edge = ax * by - ay * bx;                                                          \
+        *on_outline |= (edge == 0.0f) & (SAHL_MIN(ax, bx) <= 0.0f) & (SAHL_MAX(ax, bx) >= 0.0f) & \
+                       (SAHL_MIN(ay, by) <= 0.0f) & (SAHL_MAX(ay, by) >= 0.0f);                   \
+        *inside ^= ((ay > 0.0f) ^ (by > 0.0f)) & ~((edge > 0.0f) ^ (by > ay));                    \
+    }
+SAHL_DEFINE_CROSS_EDGE(float, int)
+SAHL_DEFINE_CROSS_EDGE(float16, int16)
 
-/// Whether the ray passes through the polygon or exactly through its outline; *lo, *hi: its box.
+/// Whether the ray passes through the polygon or exactly through its outline; lo, hi: its box.
 static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear,
                                     float* lo, float* hi) {
-    bool inside = false, on_outline = false;
-    float3 last = load3(vertices + 3u * (count - 1u));
-    float2 a = sheared_vertex(last, shear);
-    vstore3(last, 0, lo);
-    vstore3(last, 0, hi);
-    for (uint i = 0; i < count; ++i) {
-        float3 vertex = load3(vertices + 3u * i);
-        float2 b = sheared_vertex(vertex, shear);
-        vstore3(min3(vload3(0, lo), vertex), 0, lo);
-        vstore3(max3(vload3(0, hi), vertex), 0, hi);
-        float edge = a.x * b.y - a.y * b.x;
-        bool spans = SAHL_MIN(a.x, b.x) <= 0.0f && SAHL_MAX(a.x, b.x) >= 0.0f && SAHL_MIN(a.y, b.y) <= 0.0f &&
-                     SAHL_MAX(a.y, b.y) >= 0.0f;
-        on_outline = on_outline || (edge == 0.0f && spans);
-        inside = inside != ((a.y > 0.0f) != (b.y > 0.0f) && (edge > 0.0f) == (b.y > a.y));
-        a = b;
+    int inside = 0, on_outline = 0;
+    float ax = 0.0f, ay = 0.0f;
+    float3 least = INFINITY, greatest = -INFINITY;
+    // Once around, from the last vertex.
+    const global float* vertex = vertices + 3u * (count - 1u);
+    for (uint i = 0; i <= count; ++i) {
+        float z = vertex[shear->kz] - shear->oz;
+        float bx = fma(z, shear->sx, vertex[shear->kx] - shear->ox);
+        float by = fma(z, shear->sy, vertex[shear->ky] - shear->oy);
+        if (i > 0u) {
+            cross_edge(ax, ay, bx, by, &inside, &on_outline);
+        }
+        least = min3(least, load3(vertex));
+        greatest = max3(greatest, load3(vertex));
+        ax = bx;
+        ay = by;
+        vertex = vertices + 3u * i;
     }
-    return inside || on_outline;
+    vstore3(least, 0, lo);
+    vstore3(greatest, 0, hi);
+    return (inside | on_outline) != 0;
 }
 
 static inline void intersect_polygons(const global PolygonBlock* block, const global float* polygon_vertices,
                                       const Ray* ray, const RayShear* shear, const RayBoxTest* boxes,
                                       HitState* state, bool any_hit) {
-    float4 nx = vload4(0, block->normal_x), ny = vload4(0, block->normal_y), nz = vload4(0, block->normal_z);
-    float4 px = vload4(0, block->x) - ray->origin.x;
-    float4 py = vload4(0, block->y) - ray->origin.y;
-    float4 pz = vload4(0, block->z) - ray->origin.z;
-    float4 nd = nx * ray->direction.x + ny * ray->direction.y + nz * ray->direction.z;
-    float4 t = (nx * px + ny * py + nz * pz) / nd;
-    // How far off t may be, by the rounding of the vertices' own coordinates too; NaN (a ray in the
-    // plane) passes.
-    float origin_sum = fabs(ray->origin.x) + fabs(ray->origin.y) + fabs(ray->origin.z);
-    float4 doubt = 0x1p-20f * (fabs(px) + fabs(py) + fabs(pz) + origin_sum) / fabs(nd);
+    float3 o = ray->origin, d = ray->direction;
+    float4 nd, doubt;
+    float4 t = cross_planes(vload4(0, block->normal_x), vload4(0, block->normal_y),
+                            vload4(0, block->normal_z), vload4(0, block->x) - o.x, vload4(0, block->y) - o.y,
+                            vload4(0, block->z) - o.z, (float4)(d.x), (float4)(d.y), (float4)(d.z),
+                            (float4)(fabs(o.x) + fabs(o.y) + fabs(o.z)), &nd, &doubt);
+    // NaN (a ray in the plane) passes.
     uint lanes = mask4(~((t < state->t_min - doubt) | (t > state->t + doubt)) &
                        (vload4(0, block->vertex_count) != 0u));
     while (lanes != 0u) {

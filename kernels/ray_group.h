@@ -58,13 +58,16 @@ static inline void prepare_box_tests(RayGroup* rays, float extent) {
     }
 }
 
-/// Which rays can meet anything: finite ones that have a direction.
+/// can_meet_anything() for sixteen rays.
 static inline Lanes16 are_traceable(const RayGroup* rays) {
     const float16* o = rays->origin;
     const float16* d = rays->direction;
     const float16 sum = (o[0] + o[1] + o[2]) * 0.0f + (d[0] + d[1] + d[2]) * 0.0f;
-    const float16 magnitude = SAHL_MAX(SAHL_MAX(fabs(d[0]), fabs(d[1])), fabs(d[2]));
-    return equal16(sum, (float16)(0.0f)) & less16((float16)(0.0f), magnitude);
+    const float16 length = SAHL_MAX(SAHL_MAX(fabs(d[0]), fabs(d[1])), fabs(d[2]));
+    const float16 offset = SAHL_MAX(SAHL_MAX(fabs(o[0]), fabs(o[1])), fabs(o[2]));
+    return equal16(sum, (float16)(0.0f)) & less_equal16((float16)(SAHL_SHORTEST_DIRECTION), length) &
+           less_equal16(length, (float16)(SAHL_LARGEST_COORDINATE)) &
+           less_equal16(offset, (float16)(SAHL_LARGEST_COORDINATE));
 }
 
 /// The lanes whose hit at `t` on a surface comes before the one they have.
@@ -79,6 +82,34 @@ static inline Lanes16 come_before(const GroupHits* hits, float16 nearest, float1
         before |= ties & lower;
     }
     return before;
+}
+
+/// The lanes that see surface `id`: `front` are those that come from its front.
+static inline Lanes16 seen_from16(uint id, Lanes16 front) {
+    Lanes16 seen = equal16((int16)(0), (int16)(0));
+    seen = id & SAHL_ID_BACK_ONLY ? not16(front) : seen;
+    return id & SAHL_ID_FRONT_ONLY ? seen & front : seen;
+}
+
+/// Gives the rays `lanes` hits on surface `id` of `instance`; for shadow rays (any_hit) only what kind of
+/// surface that is, and an opaque one ends their range at -inf. Returns whether a range has changed.
+static inline bool take_hits(GroupHits* hits, float16* far, Lanes16 lanes, float16 t, float16 u, float16 v,
+                             uint id, uint instance, bool any_hit) {
+    if (any_hit) {
+        bool transparent = (id & SAHL_ID_TRANSPARENT) != 0u;
+        int met = transparent ? SAHL_HIT_TRANSPARENT : SAHL_HIT_OPAQUE;
+        hits->occlusion = select16(lanes, hits->occlusion | (int16)(met), hits->occlusion);
+        if (!transparent) {
+            *far = select16(lanes, (float16)(-INFINITY), *far);
+        }
+        return !transparent;
+    }
+    *far = select16(lanes, t, *far);
+    hits->u = select16(lanes, u, hits->u);
+    hits->v = select16(lanes, v, hits->v);
+    hits->primitive = select16(lanes, (int16)((int)(id & SAHL_ID_MASK)), hits->primitive);
+    hits->instance = select16(lanes, (int16)((int)instance), hits->instance);
+    return true;
 }
 
 #endif

@@ -6,7 +6,7 @@
 // interval of rays against eight boxes (Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing
 // Algorithm", sec. 3; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire
 // Ray Packets") drops most children; those left are prefetched and tested by groups of sixteen rays. In
-// a leaf one triangle at a time meets sixteen rays.
+// a leaf one triangle or other shape at a time meets sixteen rays.
 // Instances wait until their place in the tree has been passed; then the packet's rays are transformed
 // and walk the group's tree by passes of their own.
 // Pro: memory is read once for 128 rays, and all arithmetic is sixteen wide. Con: rays that part ways
@@ -15,6 +15,7 @@
 #define SAHL_TRAVERSE_PACKET_H
 
 #include "kernels/packet.h"
+#include "kernels/shape_group.h"
 #include "kernels/traverse_scalar.h"
 #include "kernels/triangle_group.h"
 
@@ -96,45 +97,17 @@ static inline uint groups_that_meet(const global BvhNode* node, uint slot, const
     return met;
 }
 
-/// A leaf's one block of a kind that has no test for sixteen rays: ray by ray.
-static inline bool intersect_leaf_by_ray(const Bvh* bvh, uint child, const RayGroup* rays, float16* far,
-                                         GroupHits* hits, uint instance, float extent, bool any_hit) {
-    uint lanes = bits16(less16((float16)(0.0f), *far));
-    bool taken = false;
-    while (lanes != 0u) {
-        uint lane = lowest_lane(lanes);
-        lanes &= lanes - 1u;
-        Ray ray;
-        ray.origin = (float3)(lane_of(rays->origin[0], lane), lane_of(rays->origin[1], lane),
-                              lane_of(rays->origin[2], lane));
-        ray.direction = (float3)(lane_of(rays->direction[0], lane), lane_of(rays->direction[1], lane),
-                                 lane_of(rays->direction[2], lane));
-        ray.exclude = (uint)((const int*)&rays->exclude)[lane];
-        ray.instance = instance;
-        TracedRay traced = traced_ray(ray.origin, ray.direction, &ray, instance, extent);
-        float* t = (float*)far + lane;
-        int* primitive = (int*)&hits->primitive + lane;
-        int* hit_instance = (int*)&hits->instance + lane;
-        HitState state = hit_state(0.0f, *t);
-        state.inside_of = instance;
-        state.before_rank = *primitive < 0 ? 0ul : surface_rank((uint)*hit_instance, (uint)*primitive);
-        intersect_leaf(bvh, child, &traced.ray, &traced.shear, &traced.boxes, &state, any_hit);
-        if (any_hit) {
-            ((int*)&hits->occlusion)[lane] |= (int)state.occlusion;
-            if (state.occlusion & SAHL_HIT_OPAQUE) {
-                *t = -INFINITY;
-                taken = true;
-            }
-        } else if (state.primitive != SAHL_NO_PRIMITIVE) {
-            *t = state.t;
-            ((float*)&hits->u)[lane] = state.u;
-            ((float*)&hits->v)[lane] = state.v;
-            *primitive = (int)state.primitive;
-            *hit_instance = (int)instance;
-            taken = true;
-        }
+/// A leaf's one block of any kind but triangles. Returns whether a range has changed.
+static inline bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTest* test) {
+    const global uchar* block = leaf_block(bvh, child);
+    switch (child_kind(child)) {
+        case SAHL_KIND_SPHERE:
+            return intersect_spheres16(test, (const global SphereBlock*)block);
+        case SAHL_KIND_POLYGON:
+            return intersect_polygons16(test, (const global PolygonBlock*)block, bvh->polygon_vertices);
+        default:
+            return intersect_quadrics16(test, (const global QuadricBlock*)block, child_kind(child));
     }
-    return taken;
 }
 
 /// The rays of `groups` in the space of instance `i`'s group.
@@ -287,8 +260,8 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
             } else {
                 for (; met != 0u; met &= met - 1u) {
                     uint g = lowest_lane(met);
-                    if (intersect_leaf_by_ray(bvh, child, rays + g, far + g, hits + g, instance, extent,
-                                              any_hit)) {
+                    const GroupTest test = {rays + g, &pass.axes, far + g, hits + g, any_hit};
+                    if (intersect_shapes16(bvh, child, &test)) {
                         cull_far[g] = far[g] * SAHL_CULL_SLACK;
                         group_far[g] = greatest16(cull_far[g]);
                         taken = true;

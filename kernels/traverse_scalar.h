@@ -90,15 +90,17 @@ static inline TracedRay traced_in_instance(const Bvh* bvh, const Ray* ray, uint 
                       instance->extent);
 }
 
-/// Whether the ray is finite and has a direction.
+/// Whether the ray is one that can be traced (SAHL_LARGEST_COORDINATE).
 static inline bool can_meet_anything(const Ray* ray) {
-    return max_abs3(ray->direction) > 0.0f && isfinite(dot3(ray->direction, (float3)(1.0f))) &&
-           isfinite(dot3(ray->origin, (float3)(1.0f)));
+    const float length = max_abs3(ray->direction);
+    return isfinite(dot3(ray->direction, (float3)(1.0f))) && isfinite(dot3(ray->origin, (float3)(1.0f))) &&
+           length >= SAHL_SHORTEST_DIRECTION && length <= SAHL_LARGEST_COORDINATE &&
+           max_abs3(ray->origin) <= SAHL_LARGEST_COORDINATE;
 }
 
 /// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of
-/// surface there are (it stops at an opaque one). Rays that are not finite or have no direction
-/// meet nothing.
+/// surface there are (it stops at an opaque one). Rays that cannot be traced meet
+/// nothing.
 static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool any_hit) {
     if (!can_meet_anything(ray)) {
         return;

@@ -27,12 +27,29 @@ typedef struct {
     float16 ax, ay, bx, by, cx, cy;
 } ShearedTriangle;
 
+/// keep_to_box() for rays of one octant.
+static inline float16 keep_to_box16(float16 t, const float* lo, const float* hi, const RayGroup* rays,
+                                    uint octant) {
+    float16 nearest, farthest;
+#pragma unroll
+    for (uint k = 0; k < 3u; ++k) {
+        const bool backward = (octant >> k & 1u) != 0u;
+        float16 enter =
+            fma((float16)(backward ? hi[k] : lo[k]), rays->inverse[k], rays->addend[k] - rays->slack[k]);
+        float16 leave =
+            fma((float16)(backward ? lo[k] : hi[k]), rays->inverse[k], rays->addend[k] + rays->slack[k]);
+        nearest = k == 0u ? enter : SAHL_MAX(nearest, enter);
+        farthest = k == 0u ? leave : SAHL_MIN(farthest, leave);
+    }
+    t = t > nearest ? t : nearest;
+    return t < farthest ? t : farthest;
+}
+
 /// Where rays of one octant meet the plane of triangle `lane`, kept to the triangle's box (keep_to_box());
 /// *nd: the product of the plane's normal with their directions.
 static inline float16 plane_distance(const global TriangleBlock* block, uint lane,
                                      const TrianglePlanes* planes, const RayGroup* rays, const PassAxes* pass,
                                      float16* nd) {
-    const uint octant = pass->octant;
     const float nx = ((const float*)&planes->normal[0])[lane];
     const float ny = ((const float*)&planes->normal[1])[lane];
     const float nz = ((const float*)&planes->normal[2])[lane];
@@ -45,21 +62,12 @@ static inline float16 plane_distance(const global TriangleBlock* block, uint lan
         height = nx * (block->x[lane] - rays->origin[0]) + ny * (block->y[lane] - rays->origin[1]) +
                  nz * (block->z[lane] - rays->origin[2]);
     }
-    float16 t = height / *nd;
-    float16 nearest, farthest;
-#pragma unroll
+    float lo[3], hi[3];
     for (uint k = 0; k < 3u; ++k) {
-        const bool backward = (octant >> k & 1u) != 0u;
-        const float lo = ((const float*)&planes->lo[k])[lane], hi = ((const float*)&planes->hi[k])[lane];
-        float16 enter =
-            fma((float16)(backward ? hi : lo), rays->inverse[k], rays->addend[k] - rays->slack[k]);
-        float16 leave =
-            fma((float16)(backward ? lo : hi), rays->inverse[k], rays->addend[k] + rays->slack[k]);
-        nearest = k == 0u ? enter : SAHL_MAX(nearest, enter);
-        farthest = k == 0u ? leave : SAHL_MIN(farthest, leave);
+        lo[k] = ((const float*)&planes->lo[k])[lane];
+        hi[k] = ((const float*)&planes->hi[k])[lane];
     }
-    t = t > nearest ? t : nearest;
-    return t < farthest ? t : farthest;
+    return keep_to_box16(height / *nd, lo, hi, rays, pass->octant);
 }
 
 /// Triangle `lane` of the block for rays of one octant and shear, whose edges `s` are seen by the rays
@@ -84,30 +92,12 @@ static inline bool offer_triangle(const global TriangleBlock* block, uint lane, 
              less_equal16(SAHL_MIN(SAHL_MIN(s->ax, s->bx), s->cx), (float16)(0.0f)) &
              less_equal16((float16)(0.0f), SAHL_MAX(SAHL_MAX(s->ay, s->by), s->cy)) &
              less_equal16(SAHL_MIN(SAHL_MIN(s->ay, s->by), s->cy), (float16)(0.0f));
-    if (id & (SAHL_ID_BACK_ONLY | SAHL_ID_FRONT_ONLY)) {
-        Lanes16 front = less_equal16(nd, (float16)(0.0f));
-        lanes &= id & SAHL_ID_BACK_ONLY ? not16(front) : lanes;
-        lanes &= id & SAHL_ID_FRONT_ONLY ? front : lanes;
-    }
+    lanes &= seen_from16(id, less_equal16(nd, (float16)(0.0f)));
     if (!any16(lanes)) {
         return false;
     }
-    if (any_hit) {
-        bool transparent = (id & SAHL_ID_TRANSPARENT) != 0u;
-        int met = transparent ? SAHL_HIT_TRANSPARENT : SAHL_HIT_OPAQUE;
-        hits->occlusion = select16(lanes, hits->occlusion | (int16)(met), hits->occlusion);
-        if (!transparent) {
-            *far = select16(lanes, (float16)(-INFINITY), *far);
-        }
-        return !transparent;
-    }
     float16 scale = 1.0f / determinant;
-    *far = select16(lanes, t, *far);
-    hits->u = select16(lanes, v * scale, hits->u);
-    hits->v = select16(lanes, w * scale, hits->v);
-    hits->primitive = select16(lanes, (int16)(primitive), hits->primitive);
-    hits->instance = select16(lanes, (int16)((int)pass->instance), hits->instance);
-    return true;
+    return take_hits(hits, far, lanes, t, v * scale, w * scale, id, pass->instance, any_hit);
 }
 
 /// The rays (of one pass) against the block's triangles. Returns whether a hit was taken.
