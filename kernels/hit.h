@@ -16,7 +16,7 @@ typedef struct {
 // Rays meet nothing whose origin or direction is not finite or has a component beyond the first of these, or
 // whose direction has none that reaches the second: their products would leave the range of floats.
 #define SAHL_LARGEST_COORDINATE 0x1p60f
-#define SAHL_SHORTEST_DIRECTION 0x1p-60f
+#define SAHL_SHORTEST_DIRECTION 0x1p-40f
 
 // Occlusion of a shadow ray.
 #define SAHL_HIT_NOTHING 0u

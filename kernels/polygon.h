@@ -20,7 +20,7 @@
         Floats edge = ax * by - ay * bx;                                                          \
         *on_outline |= (edge == 0.0f) & (SAHL_MIN(ax, bx) <= 0.0f) & (SAHL_MAX(ax, bx) >= 0.0f) & \
                        (SAHL_MIN(ay, by) <= 0.0f) & (SAHL_MAX(ay, by) >= 0.0f);                   \
-        *inside ^= ((ay > 0.0f) ^ (by > 0.0f)) & ~((edge > 0.0f) ^ (by > ay));                    \
+        *inside ^= ((ay > 0.0f) != (by > 0.0f)) & ((edge > 0.0f) == (by > ay));                   \
     }
 SAHL_DEFINE_CROSS_EDGE(float, int)
 SAHL_DEFINE_CROSS_EDGE(float16, int16)

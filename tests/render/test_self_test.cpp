@@ -2,6 +2,7 @@
 // it.
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -77,9 +78,15 @@ const std::vector<Fault> faults{
     {"intersect", "triangle.h", "((float*)&v)[lane] * scale", "((float*)&v)[lane] * 0.999f * scale"},
     {"intersect", "triangle.h", "(vload4(0, block->z) - o.z)) /", "(vload4(0, block->z) - o.x)) /"},
     {"intersect", "triangle_group.h", "v * scale", "w * scale"},
-    {"intersect", "triangle_group.h", "nz * offset[2]) / nd", "nz * offset[2]) / fabs(nd)"},
+    {"intersect", "triangle_group.h", "height / *nd", "height / fabs(*nd)"},
+    {"intersect", "shape_group.h", "chords.middle - half_chord, chords",
+     "chords.middle + half_chord, chords"},
+    {"intersect", "shape_group.h", "not16(starting & enter_is_origin)", "not16(starting)"},
+    {"intersect", "shape_group.h", "o[0] - block->x[lane]", "o[0]"},
+    {"intersect", "shape_group.h", "not16(equal16(inside | on_outline, (int16)(0)))", "not16(lanes16(0u))"},
+    {"intersect", "ray_group.h", "seen & front", "seen"},
     {"intersect", "crossings_of_width.h", "x * x + y * y <= 1.0f", "x * x + y * y <= 1.02f"},
-    {"intersect", "polygon.h", "(edge > 0.0f) == (b.y > a.y)", "edge > 0.0f"},
+    {"intersect", "polygon.h", "((edge > 0.0f) == (by > ay))", "(edge > 0.0f)"},
     {"intersect", "crossings_of_width.h", "SAHL_MAX(x - half_x, y - half_y), z - half_z)",
      "x - half_x, y - half_y)"},
     {"intersect", "crossings_of_width.h", "(1.0f - (r->px", "(1.001f - (r->px"},
@@ -89,8 +96,7 @@ const std::vector<Fault> faults{
      "front ? SAHL_ID_BACK_ONLY : 0u"},
     {"intersect", "traverse_stream.h", "entry[size - 1u] > ray->cull_t",
      "entry[size - 1u] > 0.5f * ray->cull_t"},
-    {"intersect", "traverse_packet.h", "entries[size] <= group_far[g] * SAHL_CULL_SLACK",
-     "entries[size] <= 0.5f * group_far[g]"},
+    {"intersect", "traverse_packet.h", "vload8(0, group_far)", "0.5f * vload8(0, group_far)"},
     {"intersect", "packet.h", "backward ? lo - e : hi + e", "backward ? hi + e : lo - e"},
     {"intersect", "traverse_packet.h", "(int16)((int)i + 1)", "(int16)((int)i + 2)"},
     {"intersect", "instance.h", "instance_element(instance, 2, 3)", "(real)0"},
@@ -148,6 +154,15 @@ const std::vector<Fault> faults{
      "load3(material->diffuse)"},
     {"describe", "aov.cl", "depth = (float)(surface.t * dot3_real", "depth = (float)(dot3_real"},
 };
+
+TEST_CASE("self-test: each mistake has its place in the kernels", "[self_test]") {
+    const TemporaryFolder folder;
+    for (const Fault& fault : faults) {
+        copy_kernels(folder.path() / "kernels");
+        CHECK_NOTHROW(break_kernel(folder.path() / "kernels", fault));
+        std::filesystem::remove_all(folder.path() / "kernels");
+    }
+}
 
 TEST_CASE("self-test: each mistake is found in the kernel that makes it", "[self_test]") {
     const TemporaryFolder cache;
