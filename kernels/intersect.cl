@@ -28,7 +28,7 @@ kernel void intersect_packet(const global BvhNode* nodes, const global uchar* le
     if (first < count) {
         Packet packet;
         load_packet(&packet, rays, ray_ids, capacity, first, count);
-        trace_packet(&bvh, &packet, false);
+        intersect_packet_of_rays(&bvh, &packet);
         store_packet(&packet, hits, hit_ids, capacity, first, count);
     }
 }
@@ -42,6 +42,6 @@ kernel void intersect_stream(const global BvhNode* nodes, const global uchar* le
     const uint first = (uint)get_global_id(0) * SAHL_STREAM_RAYS;
     if (first < count) {
         const RaySource source = {rays, ray_ids, hits, hit_ids, capacity, 0};
-        trace_stream(&bvh, &source, first, SAHL_MIN(first + SAHL_STREAM_RAYS, count), false);
+        intersect_by_stream(&bvh, &source, first, SAHL_MIN(first + SAHL_STREAM_RAYS, count));
     }
 }

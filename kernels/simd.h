@@ -12,6 +12,8 @@
 
 #define SAHL_OVERLOAD static inline __attribute__((overloadable))
 #define SAHL_INLINE static inline __attribute__((always_inline))
+// For large bodies: PoCL makes two functions of a kernel, each of which would have its own.
+#define SAHL_NOINLINE static inline __attribute__((noinline))
 
 #if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(SAHL_NO_AVX512) && !defined(SAHL_PLAIN_OPENCL)
 #define SAHL_AVX512

@@ -141,7 +141,7 @@ static inline void enter_instance(const Bvh* bvh, Packet* packet, uint groups, u
 
 /// Brings the packet's hits up to hits[g].t into `hits`: the first ones, or with any_hit what kinds of
 /// surfaces there are.
-static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
+SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
     GroupHits* hits = packet->hits;
     uint stack[SAHL_LEVELS * SAHL_STACK_SIZE];
     float entries[SAHL_LEVELS * SAHL_STACK_SIZE];
@@ -288,8 +288,13 @@ static inline void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
     }
 }
 
+/// The first hits of a packet's rays.
+SAHL_NOINLINE void intersect_packet_of_rays(const Bvh* bvh, Packet* packet) {
+    trace_packet(bvh, packet, false);
+}
+
 /// Fills list->occlusion.
-static inline void occlude_by_packets(const Bvh* bvh, ShadowRays* list) {
+SAHL_NOINLINE void occlude_by_packets(const Bvh* bvh, ShadowRays* list) {
     for (uint first = 0; first < list->count; first += SAHL_PACKET_RAYS) {
         Packet packet;
         load_shadow_packet(&packet, list, first);

@@ -99,9 +99,8 @@ static inline bool can_meet_anything(const Ray* ray) {
 }
 
 /// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of
-/// surface there are (it stops at an opaque one). Rays that cannot be traced meet
-/// nothing.
-static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool any_hit) {
+/// surface there are (it stops at an opaque one). Rays that cannot be traced meet nothing.
+SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool any_hit) {
     if (!can_meet_anything(ray)) {
         return;
     }
@@ -149,14 +148,14 @@ static inline void traverse(const Bvh* bvh, const Ray* ray, HitState* state, boo
 }
 
 /// The first hit with t_min < t < t_max; its primitive is SAHL_NO_PRIMITIVE when there is none.
-static inline HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState range) {
+SAHL_NOINLINE HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState range) {
     traverse(bvh, ray, &range, false);
     return range;
 }
 
 /// SAHL_HIT_OPAQUE, SAHL_HIT_TRANSPARENT (at least one, nothing opaque) or SAHL_HIT_NOTHING in
 /// 0 < t < t_max.
-static inline uint any_hit(const Bvh* bvh, const Ray* ray, float t_max) {
+SAHL_NOINLINE uint any_hit(const Bvh* bvh, const Ray* ray, float t_max) {
     HitState state = hit_state(0.0f, t_max);
     traverse(bvh, ray, &state, true);
     return strongest_occlusion(state.occlusion);

@@ -131,9 +131,8 @@ static inline void change_space(const Bvh* bvh, const RaySource* source, StreamR
 
 /// Does what the leaf on top of the stack asks for. What is not a block of triangles is kept apart, so that
 /// it takes no registers from these.
-static __attribute__((noinline)) void visit_other_leaf(const Bvh* bvh, const RaySource* source,
-                                                       StreamRay* ray, StreamStack* stack, uint child,
-                                                       bool any_hit) {
+SAHL_NOINLINE void visit_other_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray,
+                                    StreamStack* stack, uint child, bool any_hit) {
     if (child_kind(child) >= SAHL_KIND_INSTANCE) {
         change_space(bvh, source, ray, stack, child, any_hit);
     } else {
@@ -158,7 +157,7 @@ static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay
 }
 
 /// Traces rays first..end-1 of the source: the first hits, or with any_hit what kinds of surfaces there are.
-static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
+SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
     StreamRay flight[SAHL_STREAM_WIDTH];
     StreamStack stacks[SAHL_STREAM_WIDTH];
     // Places of rays whose next step is a node, and of those whose next step is a leaf.
@@ -210,8 +209,13 @@ static inline void trace_stream(const Bvh* bvh, const RaySource* source, uint fi
     }
 }
 
+/// The first hits of rays first..end-1 of a batch.
+SAHL_NOINLINE void intersect_by_stream(const Bvh* bvh, const RaySource* source, uint first, uint end) {
+    trace_stream(bvh, source, first, end, false);
+}
+
 /// Fills list->occlusion.
-static inline void occlude_by_stream(const Bvh* bvh, ShadowRays* list) {
+SAHL_NOINLINE void occlude_by_stream(const Bvh* bvh, ShadowRays* list) {
     const RaySource source = {0, 0, 0, 0, 0u, list};
     trace_stream(bvh, &source, 0u, list->count, true);
 }
