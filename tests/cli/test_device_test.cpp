@@ -44,7 +44,8 @@ struct Place {
 const std::vector<Fault> one_a_kernel{
     {"generate", "camera.h", "(real)x - (real)camera->half_width",
      "(real)x - (real)0.5 - (real)camera->half_width"},
-    {"intersect", "sphere.h", "chords.middle - half", "chords.middle + half"},
+    {"intersect", "shape_group.h", "chords.middle - half_chord, chords",
+     "chords.middle + half_chord, chords"},
     {"shade", "material.h", "light = diffuse * SAHL_MAX", "light = diffuse * 1.01f * SAHL_MAX"},
     {"shadow", "light.h", "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 1.0f",
      "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 2.0f"},
