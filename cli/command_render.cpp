@@ -181,11 +181,12 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
     const MemoryRequest request = request_of(job, device, scene, options.aovs);
     if (options.dry_run) {
         const std::uint64_t limit = device.memory().limit();
-        print_dry_run(options, job, device.info(), plan_render(scene, request, limit), limit, common.json);
+        print_dry_run(options, job, device.info(), plan_render(scene, request, limit, options.build_quality),
+                      limit, common.json);
         return ExitCode::ok;
     }
 
-    Renderer renderer(device, scene, request);
+    Renderer renderer(device, scene, request, options.build_quality);
     scene = Scene();  // the renderer has its own
     const MemoryPlan& plan = renderer.memory_plan();
     const BvhStatistics& bvh = renderer.bvh_statistics();

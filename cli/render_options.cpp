@@ -111,6 +111,14 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
     set_words(*compression, {compression_names()});
 }
 
+void add_build_option(CLI::App& command, BuildQuality& quality) {
+    add_choice<BuildQuality>(
+        command, "--build-quality", "QUALITY", quality,
+        {{"high", BuildQuality::high}, {"fast", BuildQuality::fast}},
+        "of the tree over the primitives: fast builds it in less time, and rays take longer "
+        "(default: high)");
+}
+
 void add_memory_options(CLI::App& command, RenderOptions& options) {
     add_value(
         command, "--max-mem", "SIZE",
@@ -137,6 +145,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_image_options(command, options);
     add_aov_option(command, options.aovs);
     add_encoding_options(command, options.encoding);
+    add_build_option(command, options.build_quality);
     add_memory_options(command, options);
 }
 

@@ -20,6 +20,7 @@ struct RenderOptions {
     int spp = 1;
     std::optional<SampleRange> samples;
     std::uint64_t seed = 0;
+    BuildQuality build_quality = BuildQuality::high;
     std::vector<Aov> aovs;
     OutputSettings encoding;
     std::optional<std::uint64_t> max_memory;  ///< bytes

@@ -16,8 +16,9 @@ namespace sahl {
 /// of one kind. Other children are indices of nodes.
 inline constexpr std::uint32_t binary_leaf = 0x80000000u;
 
-/// How much a wide tree is: nodes, leaves and lines of its leaves' blocks.
+/// How much a wide tree is: children of its root; nodes, leaves and lines of leaves' blocks in all.
 struct WideExtent {
+    std::uint32_t children;
     std::uint32_t nodes;
     std::uint32_t leaves;
     std::uint32_t lines;
@@ -45,6 +46,7 @@ struct BinaryTree {
 /// Builds the tree over `primitives` (at least one). No path has more than SAHL_MAX_TREE_DEPTH splits.
 /// Bounds must have no negative zeros. References are most_references(primitives) at most; triangles are cut
 /// in space if `corners` are given.
-BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners);
+BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners,
+                             BuildQuality quality);
 
 }  // namespace sahl

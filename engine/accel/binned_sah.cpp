@@ -12,11 +12,6 @@ namespace sahl {
 
 namespace {
 
-// Most sets are small, and with many bins clearing and sweeping empty ones would be most of the time.
-constexpr std::size_t many_bins = most_bins;
-constexpr std::size_t few_bins = 8;
-constexpr std::size_t small_set_size = 32;
-
 template <class Tally>
 struct Bin {
     VectorBox box;
@@ -34,19 +29,35 @@ struct Bin {
     const Tally& exits() const { return tally; }
 };
 
+// Axes first, ... last - 1.
+struct AxisRange {
+    int first;
+    int last;
+};
+
 // A set's primitives by place along each axis and by kind: kinds are the bins of a fourth axis.
 template <class Tally, std::size_t BinCount>
 struct Bins {
     std::array<std::array<Bin<Tally>, BinCount>, 3> axes;
     std::array<Bin<Tally>, std::is_same_v<Tally, AnyKind> ? kind_count : 0> kinds;
 
-    void fill(const Grid& grid, std::span<const BuildPrimitive> primitives) {
-        for (const BuildPrimitive& primitive : primitives) {
-            const Int4 place = grid.bins_at(load_lo(primitive) + load_hi(primitive));
-            for (int axis = 0; axis < 3; ++axis) {
-                axes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(place[axis])].add(primitive);
+    void fill(const Grid& grid, const AxisRange& along, std::span<const BuildPrimitive> primitives) {
+        if (along.last - along.first == 3) {
+            for (const BuildPrimitive& primitive : primitives) {
+                const Int4 place = grid.bins_at(load_lo(primitive) + load_hi(primitive));
+                for (int axis = 0; axis < 3; ++axis) {
+                    axes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(place[axis])].add(
+                        primitive);
+                }
             }
-            if constexpr (std::is_same_v<Tally, AnyKind>) kinds[primitive.kind].add(primitive);
+        } else {
+            auto& bins = axes[static_cast<std::size_t>(along.first)];
+            for (const BuildPrimitive& primitive : primitives) {
+                bins[static_cast<std::size_t>(grid.bin_of(primitive, along.first))].add(primitive);
+            }
+        }
+        if constexpr (std::is_same_v<Tally, AnyKind>) {
+            for (const BuildPrimitive& primitive : primitives) kinds[primitive.kind].add(primitive);
         }
     }
     void add(const Bins& other) {
@@ -63,18 +74,18 @@ struct Bins {
 
 template <class Tally, std::size_t BinCount>
 ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& summary, const Price& price,
-                 std::size_t max_side) {
+                 const AxisRange& axes, std::size_t max_side) {
     using SetBins = Bins<Tally, BinCount>;
     ObjectSplit split;
     split.grid = make_grid(summary.centroids, BinCount);
     SetBins bins;
     if (primitives.size() < parallel_set_size) {
-        bins.fill(split.grid, primitives);
+        bins.fill(split.grid, axes, primitives);
     } else {
         bins = tbb::parallel_reduce(
             tbb::blocked_range<std::size_t>(0, primitives.size(), parallel_grain), SetBins{},
             [&](const tbb::blocked_range<std::size_t>& range, SetBins sum) {
-                sum.fill(split.grid, primitives.subspan(range.begin(), range.size()));
+                sum.fill(split.grid, axes, primitives.subspan(range.begin(), range.size()));
                 return sum;
             },
             [](SetBins sum, const SetBins& other) {
@@ -83,7 +94,9 @@ ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& s
             });
     }
     const SideLimits limits{max_side, primitives.size()};
-    for (int axis = 0; axis < 3; ++axis) sweep(bins.along(axis), price, axis, limits, split.border);
+    for (int axis = axes.first; axis < axes.last; ++axis) {
+        sweep(bins.along(axis), price, axis, limits, split.border);
+    }
     if constexpr (std::is_same_v<Tally, AnyKind>) {
         sweep(bins.along(ObjectSplit::by_kind), price, ObjectSplit::by_kind, limits, split.border);
     }
@@ -95,6 +108,15 @@ ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& s
         }
     }
     return split;
+}
+
+// Clearing and sweeping bins must not take longer than filling them.
+template <class Tally>
+ObjectSplit find_among(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
+                       const Price& price, const AxisRange& axes, std::size_t max_side) {
+    if (primitives.size() <= 32) return find<Tally, 8>(primitives, summary, price, axes, max_side);
+    if (primitives.size() <= 256) return find<Tally, 16>(primitives, summary, price, axes, max_side);
+    return find<Tally, most_bins>(primitives, summary, price, axes, max_side);
 }
 
 void add(SetSummary& summary, std::span<const BuildPrimitive> primitives) {
@@ -135,15 +157,15 @@ SetSummary summarise(std::span<const BuildPrimitive> primitives) {
 }
 
 ObjectSplit find_object_split(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
-                              std::size_t max_side) {
-    const Price price{primitives.front().kind};
-    const bool small = primitives.size() <= small_set_size;
-    if (summary.mixed()) {
-        return small ? find<AnyKind, few_bins>(primitives, summary, price, max_side)
-                     : find<AnyKind, many_bins>(primitives, summary, price, max_side);
+                              std::size_t max_side, BuildQuality quality) {
+    AxisRange axes{0, 3};
+    if (quality == BuildQuality::fast) {
+        const int longest = summary.centroids.longest_axis();
+        axes = {longest, longest + 1};
     }
-    return small ? find<OneKind, few_bins>(primitives, summary, price, max_side)
-                 : find<OneKind, many_bins>(primitives, summary, price, max_side);
+    const Price price{Price::scale_of(summary.box), primitives.front().kind};
+    if (summary.mixed()) return find_among<AnyKind>(primitives, summary, price, axes, max_side);
+    return find_among<OneKind>(primitives, summary, price, axes, max_side);
 }
 
 }  // namespace sahl

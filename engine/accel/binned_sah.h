@@ -34,14 +34,14 @@ struct ObjectSplit {
     bool found() const { return border.found(); }
     bool goes_left(const BuildPrimitive& primitive) const {
         if (border.axis == by_kind) return static_cast<std::int32_t>(primitive.kind) < border.position;
-        return grid.bins_at(load_lo(primitive) + load_hi(primitive))[border.axis] < border.position;
+        return grid.bin_of(primitive, border.axis) < border.position;
     }
 };
 
 /// The split of least area x blocks_cost() summed over both sides, among those of at most
-/// `max_side` primitives a side; none found if there is no such split. Independent of the order
-/// of the primitives and of the threads.
+/// `max_side` primitives a side; none found if there is no such split. Fast: along the axis on which
+/// centroids lie farthest apart alone. Independent of the order of the primitives and of the threads.
 ObjectSplit find_object_split(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
-                              std::size_t max_side);
+                              std::size_t max_side, BuildQuality quality);
 
 }  // namespace sahl

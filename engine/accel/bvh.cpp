@@ -79,7 +79,7 @@ BvhStatistics measure(const Bvh& bvh, std::size_t primitives) {
 
 }  // namespace
 
-Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners) {
+Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners, BuildQuality quality) {
     const auto start = std::chrono::steady_clock::now();
     check(primitives);
     const std::size_t size = primitives.size();
@@ -88,7 +88,7 @@ Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& cor
         bvh.nodes.push_back(empty_node());
     } else {
         remove_negative_zeros(primitives);
-        BinaryTree tree = build_binary_tree(std::move(primitives), corners);
+        BinaryTree tree = build_binary_tree(std::move(primitives), corners, quality);
         collapse(tree, bvh);
         bvh.bounds = tree.bounds;
     }

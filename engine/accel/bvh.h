@@ -42,6 +42,9 @@ struct TriangleCorners {
     const float* of(std::uint32_t id) const { return data + primitives[id].data; }
 };
 
+/// What the time to build a tree is worth.
+enum class BuildQuality { fast, high };
+
 /// A leaf of the wide tree: one block, or an instance.
 struct BvhLeaf {
     std::uint32_t kind = 0;
@@ -87,7 +90,8 @@ std::uint32_t block_lines(std::uint32_t kind);
 /// Sources: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies" (binning);
 /// Stich, Friedrich, Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies"; Ylitie, Karras, Laine
 /// 2017, sec. 3 (collapse to wide nodes, octant-ordered slots).
-Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners = {});
+Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners = {},
+              BuildQuality quality = BuildQuality::high);
 
 /// Appends the nodes and leaves of `tree` to `forest`, their references moved along; bounds and
 /// statistics stay the forest's. Returns the index of the tree's root. Throws as build_bvh.

@@ -21,10 +21,10 @@ void swap_ranges(std::span<const std::span<BuildPrimitive>> a, std::span<const s
 /// order that results depends on the order before alone.
 template <class Predicate>
 std::size_t partition(std::span<BuildPrimitive> primitives, const Predicate& goes_left) {
-    const auto partition_one = [&](std::span<BuildPrimitive> part) {
+    const auto partition_serially = [&](std::span<BuildPrimitive> part) {
         return static_cast<std::size_t>(std::partition(part.begin(), part.end(), goes_left) - part.begin());
     };
-    if (primitives.size() < parallel_set_size) return partition_one(primitives);
+    if (primitives.size() < parallel_set_size) return partition_serially(primitives);
 
     const std::size_t chunks = (primitives.size() + parallel_grain - 1) / parallel_grain;
     const auto chunk_begin = [&](std::size_t chunk) {
@@ -33,7 +33,8 @@ std::size_t partition(std::span<BuildPrimitive> primitives, const Predicate& goe
     std::vector<std::size_t> middles(chunks);
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
         const std::size_t begin = chunk_begin(chunk);
-        middles[chunk] = begin + partition_one(primitives.subspan(begin, chunk_begin(chunk + 1) - begin));
+        middles[chunk] =
+            begin + partition_serially(primitives.subspan(begin, chunk_begin(chunk + 1) - begin));
     });
     std::size_t left_size = 0;
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) left_size += middles[chunk] - chunk_begin(chunk);

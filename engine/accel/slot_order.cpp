@@ -24,25 +24,33 @@ std::array<int, 8> assign_slots(std::span<const Bounds> boxes) {
         }
     }
 
-    std::array<int, 8> slot_of{};
-    slot_of.fill(-1);
+    // Of each box that has none yet, the best slot that is left.
+    std::array<std::size_t, 8> best{};
     unsigned taken = 0;
-    for (std::size_t step = 0; step < boxes.size(); ++step) {
+    const auto find_best = [&](std::size_t b) {
         float least = std::numeric_limits<float>::infinity();
-        std::size_t box = 0;
-        std::size_t slot = 0;
-        for (std::size_t b = 0; b < boxes.size(); ++b) {
-            if (slot_of[b] >= 0) continue;
-            for (std::size_t s = 0; s < 8; ++s) {
-                if ((taken >> s & 1u) == 0 && cost[b][s] < least) {
-                    least = cost[b][s];
-                    box = b;
-                    slot = s;
-                }
+        for (std::size_t s = 0; s < 8; ++s) {
+            if ((taken >> s & 1u) == 0 && cost[b][s] < least) {
+                least = cost[b][s];
+                best[b] = s;
             }
         }
+    };
+    for (std::size_t b = 0; b < boxes.size(); ++b) find_best(b);
+
+    std::array<int, 8> slot_of{};
+    slot_of.fill(-1);
+    for (std::size_t step = 0; step < boxes.size(); ++step) {
+        std::size_t box = boxes.size();
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            if (slot_of[b] < 0 && (box == boxes.size() || cost[b][best[b]] < cost[box][best[box]])) box = b;
+        }
+        const std::size_t slot = best[box];
         slot_of[box] = static_cast<int>(slot);
         taken |= 1u << slot;
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
+            if (slot_of[b] < 0 && best[b] == slot) find_best(b);
+        }
     }
     for (std::size_t b = boxes.size(); b < 8; ++b) {
         const int slot = std::countr_one(taken);

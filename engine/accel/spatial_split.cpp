@@ -14,7 +14,7 @@ namespace sahl {
 
 namespace {
 
-constexpr std::size_t spatial_bins = 16;
+constexpr std::size_t spatial_bins = 8;
 
 // Marks, in BuildPrimitive::kind, what has been sent to the right.
 constexpr std::uint32_t to_right = 0x80000000U;
@@ -83,7 +83,7 @@ struct Bins {
 
 template <class Tally>
 void find(SpatialSplit& split, std::span<const BuildPrimitive> references, const TriangleCorners& corners,
-          const SideLimits& limits) {
+          const Price& price, const SideLimits& limits) {
     Bins<Tally> bins;
     if (references.size() < parallel_set_size) {
         bins.fill(split.grid, references, corners);
@@ -99,7 +99,6 @@ void find(SpatialSplit& split, std::span<const BuildPrimitive> references, const
                 return sum;
             });
     }
-    const Price price{references.front().kind};
     for (int axis = 0; axis < 3; ++axis) {
         if (split.grid.scale[axis] == 0.0F) continue;
         sweep(std::span<const Bin<Tally>>(bins.axes[static_cast<std::size_t>(axis)]), price, axis, limits,
@@ -163,10 +162,11 @@ SpatialSplit find_spatial_split(std::span<const BuildPrimitive> references, cons
     SpatialSplit split;
     split.grid = make_grid(summary.box, spatial_bins);
     const SideLimits limits{max_side, max_together};
+    const Price price{Price::scale_of(summary.box), references.front().kind};
     if (summary.mixed()) {
-        find<AnyKind>(split, references, corners, limits);
+        find<AnyKind>(split, references, corners, price, limits);
     } else {
-        find<OneKind>(split, references, corners, limits);
+        find<OneKind>(split, references, corners, price, limits);
     }
     return split;
 }

@@ -30,6 +30,11 @@ struct Grid {
         const Int4 last = Int4{} + (bins - 1);
         return bin < last ? bin : last;
     }
+    /// The bin of a primitive's lo + hi along one axis: the same as bins_at() gives.
+    std::int32_t bin_of(const BuildPrimitive& primitive, int axis) const {
+        const float place = primitive.bounds.lo[axis] + primitive.bounds.hi[axis] - origin[axis];
+        return std::min(static_cast<std::int32_t>(place * scale[axis]), bins - 1);
+    }
     /// Where bin `i` begins, rounding apart.
     float border(int axis, std::int32_t i) const {
         return origin[axis] + static_cast<float>(i) * width[axis];
@@ -73,21 +78,31 @@ struct AnyKind {
     }
 };
 
-/// What it costs to test all that is tallied.
+/// What it costs to test a part of a set.
 struct Price {
-    std::uint32_t kind = 0;  ///< of OneKind
+    float scale;         ///< of lengths, so that areas neither under- nor overflow
+    std::uint32_t kind;  ///< of OneKind
 
+    static float scale_of(const VectorBox& set) {
+        const Float4 extent = set.hi - set.lo;
+        return std::min(1.0F / std::max({extent[0], extent[1], extent[2]}), 1e30F);
+    }
     std::uint32_t of(const OneKind& tally) const {
-        return block_costs[kind] * ((tally.count + block_width(kind) - 1) / block_width(kind));
+        return block_costs[kind] * (block_width(kind) == 1 ? tally.count : (tally.count + 3) / 4);
     }
     static std::uint32_t of(const AnyKind& tally) { return blocks_cost(tally.counts); }
+    template <class Tally>
+    float of(const VectorBox& box, const Tally& tally) const {
+        const Float4 e = (box.hi - box.lo) * scale;
+        return (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]) * static_cast<float>(of(tally));
+    }
 };
 
 /// Where a set is parted: what is in bins less than `position` along `axis` is on the left.
 struct Border {
     int axis = 0;
     std::int32_t position = 0;
-    double cost = std::numeric_limits<double>::infinity();  ///< area x price, summed over both sides
+    float cost = std::numeric_limits<float>::infinity();  ///< area x price, summed over both sides
     std::size_t left_size = 0;
     std::size_t right_size = 0;
 
@@ -106,12 +121,12 @@ struct SideLimits {
 template <class Bin>
 void sweep(std::span<const Bin> bins, const Price& price, int axis, const SideLimits& limits, Border& best) {
     struct Side {
-        double cost;
+        float cost;
         std::size_t size;
     };
     const auto side_of = [&](const VectorBox& box, const auto& tally) {
         const std::size_t size = tally.size();
-        return size == 0 ? Side{0, 0} : Side{half_area(box) * price.of(tally), size};
+        return size == 0 ? Side{0, 0} : Side{price.of(box, tally), size};
     };
     std::array<Side, most_bins> right_sides;
     VectorBox right_box;
@@ -133,7 +148,7 @@ void sweep(std::span<const Bin> bins, const Price& price, int axis, const SideLi
         const std::size_t larger = std::max(left_side.size, right_side.size);
         if (left_side.size == 0 || right_side.size == 0) continue;
         if (larger > limits.each || left_side.size + right_side.size > limits.together) continue;
-        const double cost = left_side.cost + right_side.cost;
+        const float cost = left_side.cost + right_side.cost;
         if (cost < best.cost || (cost == best.cost && larger < best.larger_side())) {
             best = {axis, static_cast<std::int32_t>(i), cost, left_side.size, right_side.size};
         }

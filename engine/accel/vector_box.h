@@ -45,6 +45,11 @@ struct VectorBox {
         other.extend(*this);
         return other;
     }
+    int longest_axis() const {
+        const Float4 extent = hi - lo;
+        const int of_xy = extent[1] > extent[0] ? 1 : 0;
+        return extent[2] > extent[of_xy] ? 2 : of_xy;
+    }
     Bounds bounds() const { return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}}; }
 };
 

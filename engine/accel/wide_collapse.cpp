@@ -80,18 +80,18 @@ void Collapse::cut(const Subtree& subtree, std::uint32_t most, Children& childre
     children.subtrees[children.size++] = subtree;
 }
 
-// The children of `parent` as a wide node. Where a child's own children find room beside the others, the plan
-// has them there, but for what rounding hides; most_nodes() relies on it.
+// The children of `parent` as a wide node, once those below are measured. Where a child's own children find
+// room beside the others, the plan has them there, but for what rounding hides; most_nodes() relies on it.
 Children Collapse::open(const Subtree& parent) const {
     Children children;
     cut(parent, wide_width, children);
-    for (std::size_t i = 0; i < children.size && children.size < wide_width;) {
-        Children below;
-        cut(children.subtrees[i], wide_width, below);
-        if (below.size == 1 || children.size - 1 + below.size > wide_width) {
+    for (std::size_t i = 0; i < children.size;) {
+        const Subtree child = children.subtrees[i];
+        if (child.is_leaf() || children.size - 1 + tree.nodes[child.node].extent.children > wide_width) {
             ++i;
             continue;
         }
+        const Children below = open(child);
         children.subtrees[i] = below.subtrees[0];
         for (std::size_t k = 1; k < below.size; ++k) children.subtrees[children.size++] = below.subtrees[k];
     }
@@ -99,17 +99,19 @@ Children Collapse::open(const Subtree& parent) const {
 }
 
 WideExtent Collapse::extent_of(const Subtree& subtree) const {
-    return subtree.is_leaf() ? WideExtent{0, 1, block_lines(kind_of(subtree))}
+    return subtree.is_leaf() ? WideExtent{1, 0, 1, block_lines(kind_of(subtree))}
                              : tree.nodes[subtree.node].extent;
 }
 
 // Finds the extents of `node`, which becomes a wide one, and of all wide ones below it.
 void Collapse::measure(const Subtree& node) const {
-    const Children children = open(node);
-    for_children(node, children.size, [&](std::size_t i) {
-        if (!children.subtrees[i].is_leaf()) measure(children.subtrees[i]);
+    Children planned;
+    cut(node, wide_width, planned);
+    for_children(node, planned.size, [&](std::size_t i) {
+        if (!planned.subtrees[i].is_leaf()) measure(planned.subtrees[i]);
     });
-    WideExtent sum{1, 0, 0};
+    const Children children = open(node);
+    WideExtent sum{static_cast<std::uint32_t>(children.size), 1, 0, 0};
     for (std::size_t i = 0; i < children.size; ++i) add(sum, extent_of(children.subtrees[i]));
     tree.nodes[node.node].extent = sum;
 }

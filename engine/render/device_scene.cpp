@@ -42,14 +42,14 @@ std::uint64_t bytes_of(const HostScene& host) {
 
 }  // namespace
 
-DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRequest& job) {
+DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRequest& job,
+                              BuildQuality quality) {
     MemoryAccountant& accountant = device.memory();
-    check_room_to_build(scene, job, accountant.limit());
-    const SceneMemory bound = bound_scene_memory(scene);
+    const SceneMemory bound = check_room_to_build(scene, job, accountant.limit());
     MemoryReservation held(accountant, bound.loaded + bound.building, "the scene and its trees");
-    HostScene host = make_host_scene(scene);
+    HostScene host = make_host_scene(scene, quality);
     DeviceScene out;
-    out.plan = plan_memory(measure_scene_memory(scene, host), job, accountant.limit());
+    out.plan = plan_memory(measure_scene_memory(scene, host, bound), job, accountant.limit());
     held.give_back(bound.building);
 
     MemoryReservation building(accountant, bytes_of(host), "the scene for the device");

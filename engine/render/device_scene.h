@@ -27,6 +27,7 @@ struct DeviceScene {
 /// Uploads what make_host_scene makes of the scene. The device's accountant counts the scene and what is
 /// built of it on the host as well, and its limit has to leave room for `job`, see plan_memory(). Errors as
 /// there, of make_host_scene and Buffer.
-DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRequest& job = {});
+DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRequest& job = {},
+                              BuildQuality quality = BuildQuality::high);
 
 }  // namespace sahl

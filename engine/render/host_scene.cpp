@@ -30,8 +30,13 @@ float largest_coordinate(const Bounds& bounds) {
 /// The trees of groups, each built when it is first wanted.
 class GroupTrees {
 public:
-    GroupTrees(const Scene& scene, std::span<const BuildPrimitive> primitives, const TriangleCorners& corners)
-        : scene_(scene), primitives_(primitives), corners_(corners), trees_(scene.groups.size()) {}
+    GroupTrees(const Scene& scene, std::span<const BuildPrimitive> primitives, const TriangleCorners& corners,
+               BuildQuality quality)
+        : scene_(scene),
+          primitives_(primitives),
+          corners_(corners),
+          quality_(quality),
+          trees_(scene.groups.size()) {}
 
     const Bvh& of(std::uint32_t group) {
         std::optional<Bvh>& tree = trees_[group];
@@ -41,7 +46,7 @@ public:
             std::vector<BuildPrimitive> primitives;
             primitives.reserve(most_references(range.size()));
             primitives.assign(range.begin(), range.end());
-            tree = build_bvh(std::move(primitives), corners_);
+            tree = build_bvh(std::move(primitives), corners_, quality_);
         }
         return *tree;
     }
@@ -61,6 +66,7 @@ private:
     const Scene& scene_;
     std::span<const BuildPrimitive> primitives_;
     TriangleCorners corners_;
+    BuildQuality quality_;
     std::vector<std::optional<Bvh>> trees_;
 };
 
@@ -118,7 +124,7 @@ bool is_finite(const Bounds& bounds) {
 
 }  // namespace
 
-HostScene make_host_scene(const Scene& scene) {
+HostScene make_host_scene(const Scene& scene, BuildQuality quality) {
     HostScene out;
     out.lowered = lower_scene(scene);
     std::vector<BuildPrimitive> primitives = std::exchange(out.lowered.build_primitives, {});
@@ -127,7 +133,7 @@ HostScene make_host_scene(const Scene& scene) {
     placed_boxes.reserve(placed.size());
 
     const TriangleCorners corners{out.lowered.shape_data.data(), out.lowered.primitives.data()};
-    GroupTrees trees(scene, primitives, corners);
+    GroupTrees trees(scene, primitives, corners, quality);
     out.instances.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
         const PlacedGroup& instance = placed[i];
@@ -153,7 +159,7 @@ HostScene make_host_scene(const Scene& scene) {
     primitives.insert(primitives.end(), placed_boxes.begin(), placed_boxes.end());
     placed_boxes = {};
     const bool empty = primitives.empty();
-    out.bvh = build_bvh(std::move(primitives), corners);
+    out.bvh = build_bvh(std::move(primitives), corners, quality);
     const std::vector<std::uint32_t> roots = trees.append_to(out.bvh);
     for (std::size_t i = 0; i < placed.size(); ++i) out.instances[i].root = roots[placed[i].group];
 

@@ -21,6 +21,6 @@ struct HostScene {
 
 /// Errors as lower_scene, build_bvh and place_instances; Error(scene) for an instance whose transforms
 /// together have no inverse or leave float's range.
-HostScene make_host_scene(const Scene& scene);
+HostScene make_host_scene(const Scene& scene, BuildQuality quality = BuildQuality::high);
 
 }  // namespace sahl

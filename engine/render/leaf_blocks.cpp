@@ -4,6 +4,10 @@
 #include <bit>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <vector>
+
+#include <tbb/parallel_for.h>
 
 namespace sahl {
 namespace {
@@ -93,31 +97,57 @@ void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLea
     });
 }
 
+void pack(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, std::byte* block) {
+    switch (leaf.kind) {
+        case SAHL_KIND_TRIANGLE:
+            pack_triangles(scene, lowered, leaf, *reinterpret_cast<device::TriangleBlock*>(block));
+            break;
+        case SAHL_KIND_SPHERE:
+            pack_spheres(scene, lowered, leaf, *reinterpret_cast<device::SphereBlock*>(block));
+            break;
+        case SAHL_KIND_POLYGON:
+            pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
+            break;
+        case SAHL_KIND_INSTANCE:
+            break;
+        default:
+            pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block));
+            break;
+    }
+}
+
+// Leaves that a thread packs at a time.
+constexpr std::size_t chunk_size = 1U << 12;
+
+std::span<const BvhLeaf> chunk_of(std::span<const BvhLeaf> leaves, std::size_t chunk) {
+    const std::size_t begin = chunk * chunk_size;
+    return leaves.subspan(begin, std::min(chunk_size, leaves.size() - begin));
+}
+
+// Where the chunks' blocks begin, in lines.
+std::vector<std::size_t> chunk_begins(std::span<const BvhLeaf> leaves, std::size_t chunks) {
+    std::vector<std::size_t> begins(chunks, 0);
+    std::size_t lines = 0;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        begins[chunk] = lines;
+        for (const BvhLeaf& leaf : chunk_of(leaves, chunk)) lines += block_lines(leaf.kind);
+    }
+    return begins;
+}
+
 }  // namespace
 
 HostMemory pack_leaf_blocks(MemoryAccountant& accountant, const Scene& scene, const HostScene& host) {
-    const LoweredScene& lowered = host.lowered;
     HostMemory memory(accountant, std::size_t{host.bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES, "leaf blocks");
-    auto* block = static_cast<std::byte*>(memory.data());
-    for (const BvhLeaf& leaf : host.bvh.leaves) {
-        switch (leaf.kind) {
-            case SAHL_KIND_TRIANGLE:
-                pack_triangles(scene, lowered, leaf, *reinterpret_cast<device::TriangleBlock*>(block));
-                break;
-            case SAHL_KIND_SPHERE:
-                pack_spheres(scene, lowered, leaf, *reinterpret_cast<device::SphereBlock*>(block));
-                break;
-            case SAHL_KIND_POLYGON:
-                pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
-                break;
-            case SAHL_KIND_INSTANCE:
-                break;
-            default:
-                pack_quadrics(scene, lowered, leaf, *reinterpret_cast<device::QuadricBlock*>(block));
-                break;
+    const std::size_t chunks = (host.bvh.leaves.size() + chunk_size - 1) / chunk_size;
+    const std::vector<std::size_t> begins = chunk_begins(host.bvh.leaves, chunks);
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        auto* block = static_cast<std::byte*>(memory.data()) + begins[chunk] * SAHL_LEAF_LINE_BYTES;
+        for (const BvhLeaf& leaf : chunk_of(host.bvh.leaves, chunk)) {
+            pack(scene, host.lowered, leaf, block);
+            block += std::size_t{block_lines(leaf.kind)} * SAHL_LEAF_LINE_BYTES;
         }
-        block += std::size_t{block_lines(leaf.kind)} * SAHL_LEAF_LINE_BYTES;
-    }
+    });
     return memory;
 }
 

@@ -74,14 +74,16 @@ MemoryPlan plan_memory(const SceneMemory& scene, const MemoryRequest& request, s
                     plan.total(), human(plan.total()), limit, human(limit)));
 }
 
-void check_room_to_build(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
+SceneMemory check_room_to_build(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
     const SceneMemory bound = bound_scene_memory(scene);
     if (bound.loaded + bound.building > limit) plan_memory(bound, request, limit);
+    return bound;
 }
 
-MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit) {
-    check_room_to_build(scene, request, limit);
-    return plan_memory(measure_scene_memory(scene, make_host_scene(scene)), request, limit);
+MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit,
+                       BuildQuality quality) {
+    const SceneMemory bound = check_room_to_build(scene, request, limit);
+    return plan_memory(measure_scene_memory(scene, make_host_scene(scene, quality), bound), request, limit);
 }
 
 }  // namespace sahl

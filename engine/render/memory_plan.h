@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "engine/accel/bvh.h"
 #include "engine/device/device.h"
 #include "engine/render/render_settings.h"
 #include "engine/render/scene_memory.h"
@@ -51,11 +52,12 @@ inline constexpr std::uint64_t runtime_base_bytes = std::uint64_t{384} << 20U;
 MemoryPlan plan_memory(const SceneMemory& scene, const MemoryRequest& request, std::uint64_t limit);
 
 /// Throws Error(memory), naming a limit that is enough, when `limit` leaves no room to build the scene's
-/// trees. Errors as bound_scene_memory.
-void check_room_to_build(const Scene& scene, const MemoryRequest& request, std::uint64_t limit);
+/// trees; the bound if it does. Errors as bound_scene_memory.
+SceneMemory check_room_to_build(const Scene& scene, const MemoryRequest& request, std::uint64_t limit);
 
 /// The plan of a render that makes the scene ready, as far as it is known without a device having it.
 /// Errors as check_room_to_build, plan_memory and make_host_scene.
-MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit);
+MemoryPlan plan_render(const Scene& scene, const MemoryRequest& request, std::uint64_t limit,
+                       BuildQuality quality = BuildQuality::high);
 
 }  // namespace sahl

@@ -37,10 +37,10 @@ std::uint64_t pixel_count(const Crop& crop) {
 }  // namespace
 
 struct Renderer::Impl {
-    Impl(Device& on, const Scene& scene, const MemoryRequest& job)
+    Impl(Device& on, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
         : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(program) {
         test_before_first_use(on, program, kernels);
-        device_scene = make_device_scene(on, scene, job);
+        device_scene = make_device_scene(on, scene, job, quality);
     }
 
     /// Rays of a batch, for `samples` of them in all.
@@ -57,8 +57,8 @@ struct Renderer::Impl {
     DeviceScene device_scene;
 };
 
-Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job)
-    : impl_(std::make_unique<Impl>(device, scene, job)) {}
+Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
+    : impl_(std::make_unique<Impl>(device, scene, job, quality)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 

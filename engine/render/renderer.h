@@ -39,7 +39,8 @@ public:
     /// Throws Error(scene) for what the loaders cannot see (no primitive limit exceeded, finite
     /// bounds), Error(device) from below, and Error(memory) naming what would be enough when the scene and
     /// `job` do not fit within the limit of the device's accountant. `device` must outlive the renderer.
-    Renderer(Device& device, const Scene& scene, const MemoryRequest& job = {});
+    Renderer(Device& device, const Scene& scene, const MemoryRequest& job = {},
+             BuildQuality quality = BuildQuality::high);
     ~Renderer();
     Renderer(Renderer&&) noexcept;
 

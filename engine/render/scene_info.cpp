@@ -15,7 +15,7 @@ MemoryPlan memory_of(const Scene& scene, const HostScene& host) {
     request.depth = scene.depth;
     request.light_count = host.constants.light_count;
     request.ray_budget = RenderSettings{}.ray_budget;
-    return plan_memory(measure_scene_memory(scene, host), request, UINT64_MAX);
+    return plan_memory(measure_scene_memory(scene, host, bound_scene_memory(scene)), request, UINT64_MAX);
 }
 
 /// Primitives of groups with those of the groups placed inside.

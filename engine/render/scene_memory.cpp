@@ -86,11 +86,11 @@ SceneMemory bound_scene_memory(const Scene& scene) {
     return memory;
 }
 
-SceneMemory measure_scene_memory(const Scene& scene, const HostScene& host) {
+SceneMemory measure_scene_memory(const Scene& scene, const HostScene& host, const SceneMemory& bound) {
     SceneMemory memory = shading_memory(scene, host.lowered.shape_data.size(), host.instances.size());
     memory.nodes = footprint<device::BvhNode>(host.bvh.nodes.size());
     memory.leaf_blocks = Buffer::footprint(std::uint64_t{host.bvh.leaf_lines} * SAHL_LEAF_LINE_BYTES);
-    memory.building = bound_scene_memory(scene).building;
+    memory.building = bound.building;
     return memory;
 }
 

@@ -26,7 +26,7 @@ struct SceneMemory {
 /// Errors as place_instances.
 SceneMemory bound_scene_memory(const Scene& scene);
 
-/// The sizes of what was built of `scene`; `building` is the bound.
-SceneMemory measure_scene_memory(const Scene& scene, const HostScene& host);
+/// The sizes of what was built of `scene`; `building` is that of its bound.
+SceneMemory measure_scene_memory(const Scene& scene, const HostScene& host, const SceneMemory& bound);
 
 }  // namespace sahl

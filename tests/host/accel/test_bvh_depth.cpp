@@ -19,7 +19,7 @@ std::uint32_t depth_of(const BinaryTree& tree, std::uint32_t node) {
 }
 
 std::uint32_t binary_depth(std::vector<BuildPrimitive> primitives) {
-    const BinaryTree tree = build_binary_tree(std::move(primitives), {});
+    const BinaryTree tree = build_binary_tree(std::move(primitives), {}, BuildQuality::high);
     return depth_of(tree, tree.root);
 }
 

@@ -14,8 +14,8 @@ using namespace sahl::test;
 
 namespace {
 
-void check_tree(const TriangleSet& set) {
-    const Bvh bvh = build_bvh(set.primitives, set.corners());
+void check_tree(const TriangleSet& set, BuildQuality quality) {
+    const Bvh bvh = build_bvh(set.primitives, set.corners(), quality);
     const TreeFacts facts = walk_parts(bvh, set);
     CHECK(facts.fault == "");
     CHECK(facts.stack_need <= SAHL_STACK_SIZE);
@@ -34,15 +34,18 @@ TEST_CASE("spatial splits: every point of every triangle is in a leaf that has i
         for (const std::size_t size : {1U, 2U, 4U, 5U, 9U, 40U, 500U, 3000U}) {
             for (std::uint32_t seed = 0; seed < (size < 100 ? 20U : 1U); ++seed) {
                 CAPTURE(static_cast<int>(kind), size, seed);
-                check_tree(make_triangles(kind, size, seed));
+                const TriangleSet set = make_triangles(kind, size, seed);
+                check_tree(set, BuildQuality::high);
+                check_tree(set, BuildQuality::fast);
             }
         }
     }
 }
 
 TEST_CASE("spatial splits: large sets, cut by several threads, are whole", "[bvh]") {
-    check_tree(make_triangles(Triangles::crossed, 80000, 3));
-    check_tree(make_triangles(Triangles::giant, 80000, 3));
+    check_tree(make_triangles(Triangles::crossed, 80000, 3), BuildQuality::high);
+    check_tree(make_triangles(Triangles::giant, 80000, 3), BuildQuality::high);
+    check_tree(make_triangles(Triangles::beams, 80000, 3), BuildQuality::fast);
 }
 
 TEST_CASE("spatial splits: triangles among other kinds are cut, the others are whole", "[bvh]") {
@@ -85,4 +88,15 @@ TEST_CASE("spatial splits: small triangles that do not overlap stay whole", "[bv
         set.primitives.push_back({{{x, 0, z}, {x + 0.5F, 0, z + 0.5F}}, SAHL_KIND_TRIANGLE, id});
     }
     CHECK(build_bvh(set.primitives, set.corners()).statistics.references == 5000);
+}
+
+TEST_CASE("spatial splits: a tree built fast costs at most a quarter more", "[bvh]") {
+    for (const Triangles kind : {Triangles::small, Triangles::beams, Triangles::giant}) {
+        const TriangleSet set = make_triangles(kind, 30000, 2);
+        const auto cost = [&](BuildQuality quality) {
+            return build_bvh(set.primitives, set.corners(), quality).statistics.sah_cost;
+        };
+        CAPTURE(static_cast<int>(kind));
+        CHECK(cost(BuildQuality::fast) <= 1.25 * cost(BuildQuality::high));
+    }
 }
