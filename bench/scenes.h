@@ -19,6 +19,8 @@ struct BenchScene {
 BenchScene organic_mesh();
 /// 1,280,000 triangles: a height field of mountains.
 BenchScene terrain_mesh();
+/// 10,008,338 triangles: the same, finer.
+BenchScene large_terrain_mesh();
 /// 330,776 triangles: a hall with columns, stairs, railings and statues, spanned by bars 23.6 long and
 /// 0.012 thick.
 BenchScene architecture_mesh();
