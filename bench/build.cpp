@@ -78,10 +78,10 @@ Cell measure(const BenchScene& mesh, RTCDevice device, const Options& options) {
     host.lowered = lower_scene(mesh.scene);
     const EmbreeGeometry geometry = embree_triangles(device, mesh.scene);
     Cell cell{mesh.name, mesh.scene.triangles.size(), {}, build_embree_tree(device, host.lowered)};
-    for (const auto& [name, quality] : sahl_qualities) {
-        Builder& builder = cell.builders.emplace_back(Builder{name});
+    for (const auto& entry : sahl_qualities) {
+        Builder& builder = cell.builders.emplace_back(Builder{entry.name});
         builder.peak_bytes =
-            peak_growth([&] { build_sahl(mesh.scene, host, quality, options.clock, builder); });
+            peak_growth([&] { build_sahl(mesh.scene, host, entry.quality, options.clock, builder); });
         builder.seconds.clear();
     }
     for (const auto& entry : embree_qualities) cell.builders.push_back({entry.name});

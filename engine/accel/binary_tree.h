@@ -1,5 +1,9 @@
 // The binary tree that the wide one is collapsed from: a split for every set of primitives that
 // is no leaf.
+//
+// Memory, measured by bench/run build: from the boxes of triangles to wide nodes and packed leaf blocks the
+// process grows by 105 to 185 bytes a triangle at its peak, most of it references and binary nodes;
+// scene_memory.h has the bound.
 #pragma once
 
 #include <cstddef>
