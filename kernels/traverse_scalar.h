@@ -114,14 +114,16 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
     float cull_t = state->t * SAHL_CULL_SLACK;
     for (;;) {
         if ((current & SAHL_CHILD_LEAF) && child_kind(current) == SAHL_KIND_INSTANCE) {
-            uint i = current & SAHL_CHILD_OFFSET_MASK;
-            here = traced_in_instance(bvh, ray, i);
-            state->inside_of = i + 1u;
-            world_size = size;
-            current = bvh->instances[i].root;
-            continue;
-        }
-        if (current & SAHL_CHILD_LEAF) {
+            const uint i = current & SAHL_CHILD_OFFSET_MASK;
+            const TracedRay inside = traced_in_instance(bvh, ray, i);
+            if (can_meet_anything(&inside.ray)) {
+                here = inside;
+                state->inside_of = i + 1u;
+                world_size = size;
+                current = bvh->instances[i].root;
+                continue;
+            }
+        } else if (current & SAHL_CHILD_LEAF) {
             intersect_leaf(bvh, current, &here.ray, &here.shear, &here.boxes, state, any_hit);
             if (any_hit && (state->occlusion & SAHL_HIT_OPAQUE)) {
                 return;

@@ -120,6 +120,9 @@ static inline void change_space(const Bvh* bvh, const RaySource* source, StreamR
     }
     const uint i = child & SAHL_CHILD_OFFSET_MASK;
     const TracedRay traced = traced_in_instance(bvh, &in_world, i);
+    if (!can_meet_anything(&traced.ray)) {
+        return;
+    }
     put_into_space(ray, &traced);
     ray->state.inside_of = i + 1u;
     stack->child[ray->size] = SAHL_CHILD_LEAVE;
