@@ -40,6 +40,7 @@ const std::vector<Layout> layouts = {
     FIELD(TriangleBlock, x),
     FIELD(TriangleBlock, id),
     FIELD(TriangleBlock, y),
+    FIELD(TriangleBlock, count),
     FIELD(TriangleBlock, z),
     SIZE(SphereBlock),
     FIELD(SphereBlock, x),
