@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/render/ray_queues.h"
+#include "kernels/rays_per_item.h"
 
 namespace sahl::bench {
 namespace {
@@ -65,12 +66,17 @@ Kernel& SahlTracer::kernel_of(const std::string& name) {
                                    : kernels_.emplace(name, program_.kernel(name)).first->second;
 }
 
+std::uint32_t SahlTracer::rays_per_item_of(const std::string& way, bool occlusion) const {
+    if (way == "packet") return SAHL_PACKET_RAYS;
+    if (way == "stream") return occlusion ? SAHL_SHADOW_RAYS : SAHL_STREAM_RAYS;
+    return device_.rays_per_item();
+}
+
 double SahlTracer::trace(const std::string& way, Clock clock) {
     const DeviceScene& scene = *scene_;
     Batch& batch = *batch_;
-    // As the engine launches them all; kernels that take more rays leave items without work.
-    const Launch launch{(batch.count + device_.rays_per_item() - 1) / device_.rays_per_item(), 0,
-                        batch.count};
+    const std::uint32_t rays_per_item = rays_per_item_of(way, batch.occlusion);
+    const Launch launch{(batch.count + rays_per_item - 1) / rays_per_item, 0, batch.count};
     Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + way);
     const double start = seconds_now(clock);
     if (batch.occlusion) {

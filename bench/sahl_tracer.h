@@ -47,6 +47,8 @@ private:
         bool occlusion;
     };
 
+    /// What one work-item of a kernel takes.
+    std::uint32_t rays_per_item_of(const std::string& way, bool occlusion) const;
     Kernel& kernel_of(const std::string& name);
 
     Device device_;

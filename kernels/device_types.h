@@ -1,5 +1,5 @@
-// The structs that the host fills and the kernels read: the only header that C++ and OpenCL C
-// share. 32-bit scalars only; sizes are asserted on both sides and offsets checked by a test.
+// The structs that the host fills and the kernels read: with rays_per_item.h all that C++ and OpenCL
+// C share. 32-bit scalars only; sizes are asserted on both sides and offsets checked by a test.
 #ifndef SAHL_DEVICE_TYPES_H
 #define SAHL_DEVICE_TYPES_H
 

@@ -5,11 +5,11 @@
 
 #include "kernels/ray_batch.h"
 #include "kernels/ray_group.h"
+#include "kernels/rays_per_item.h"
 #include "kernels/shadow_rays.h"
 #include "kernels/triangle_group.h"
 
 #define SAHL_PACKET_GROUPS 8u
-#define SAHL_PACKET_RAYS 128u
 
 /// The rays of a packet, in the world and in the instance that is being walked through.
 typedef struct {

@@ -3,9 +3,7 @@
 #define SAHL_SHADOW_RAYS_H
 
 #include "kernels/hit.h"
-
-// As many as a work-item holds.
-#define SAHL_SHADOW_RAYS 256u
+#include "kernels/rays_per_item.h"
 
 typedef struct {
     float origin[3][SAHL_SHADOW_RAYS], direction[3][SAHL_SHADOW_RAYS];

@@ -13,10 +13,10 @@
 #define SAHL_TRAVERSE_STREAM_H
 
 #include "kernels/ray_batch.h"
+#include "kernels/rays_per_item.h"
 #include "kernels/traverse_scalar.h"
 
 #define SAHL_STREAM_WIDTH 32u
-#define SAHL_STREAM_RAYS 1024u
 
 // Ends of stacks: of the ray's, and of an instance's part of it. They look like leaves.
 #define SAHL_CHILD_END 0xffffffffu

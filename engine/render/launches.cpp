@@ -3,15 +3,17 @@
 #include <cstddef>
 #include <string>
 
+#include "kernels/rays_per_item.h"
+
 namespace sahl {
 namespace {
 
-Launch per_ray(const Device& device, std::uint32_t generation, std::uint32_t count) {
-    return {(count + device.rays_per_item() - 1) / device.rays_per_item(), generation, count};
+Launch per_ray(std::uint32_t rays_per_item, std::uint32_t generation, std::uint32_t count) {
+    return {(count + rays_per_item - 1) / rays_per_item, generation, count};
 }
 
 Launch per_ray(const Wavefront& wavefront, const WaitingBatch& in_work) {
-    return per_ray(wavefront.device, in_work.generation, in_work.count);
+    return per_ray(wavefront.device.rays_per_item(), in_work.generation, in_work.count);
 }
 
 Launch per_block(const WaitingBatch& in_work) {
@@ -23,8 +25,13 @@ std::array<Kernel, 3> one_of_each(Program& program, const std::string& prefix) {
             program.kernel(prefix + "stream")};
 }
 
-Kernel& chosen(std::array<Kernel, 3>& kernels, const Device& device, const WaitingBatch& in_work) {
-    return kernels[static_cast<std::size_t>(traversal_for(device, in_work.generation))];
+/// The launch of a kernel that traces rays one by one, or together as many as its work-items take.
+Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, Traversal traversal,
+                      std::uint32_t rays_of_packets, std::uint32_t rays_of_streams) {
+    std::uint32_t rays = wavefront.device.rays_per_item();
+    if (traversal == Traversal::packet) rays = rays_of_packets;
+    if (traversal == Traversal::stream) rays = rays_of_streams;
+    return per_ray(rays, in_work.generation, in_work.count);
 }
 
 }  // namespace
@@ -49,18 +56,19 @@ WavefrontKernels::WavefrontKernels(Program& program)
 
 void launch_generate(Wavefront& wavefront, const device::CameraConstants& camera,
                      const device::WaveConstants& wave, RayBatch& out) {
-    wavefront.kernels.generate.launch(per_ray(wavefront.device, 0, wave.count), camera, wave, out.rays,
-                                      out.ids, wavefront.queues.capacity);
+    wavefront.kernels.generate.launch(per_ray(wavefront.device.rays_per_item(), 0, wave.count), camera, wave,
+                                      out.rays, out.ids, wavefront.queues.capacity);
 }
 
 void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    Kernel& intersect = chosen(wavefront.kernels.intersect, wavefront.device, in_work);
-    intersect.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices,
-                     scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
-                     in_work.count);
+    const Traversal traversal = traversal_for(wavefront.device, in_work.generation);
+    Kernel& intersect = wavefront.kernels.intersect[static_cast<std::size_t>(traversal)];
+    intersect.launch(per_traced_ray(wavefront, in_work, traversal, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
+                     scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances, scene.constants,
+                     batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
 }
 
 void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out) {
@@ -77,11 +85,12 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    Kernel& shadow = chosen(wavefront.kernels.shadow, wavefront.device, in_work);
-    shadow.launch(per_ray(wavefront, in_work), scene.nodes, scene.leaves, scene.polygon_vertices,
-                  scene.instances, scene.primitives, scene.materials, scene.lights, scene.constants,
-                  q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity,
-                  in_work.count);
+    const Traversal traversal = traversal_for(wavefront.device, in_work.generation);
+    Kernel& shadow = wavefront.kernels.shadow[static_cast<std::size_t>(traversal)];
+    shadow.launch(per_traced_ray(wavefront, in_work, traversal, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
+                  scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances, scene.primitives,
+                  scene.materials, scene.lights, scene.constants, q.hit_ids, q.shadow_surfaces,
+                  q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {
