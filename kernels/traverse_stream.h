@@ -159,6 +159,18 @@ static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay
     drop_hidden(ray, stack);
 }
 
+/// Puts a ray on the list of its next step and asks for the memory of that. Both lists are written and one
+/// counts it: no branch.
+SAHL_INLINE void enlist(const Bvh* bvh, uint place, uint child, uint* at_node, uint* node_count,
+                        uint* at_leaf, uint* leaf_count) {
+    prefetch_child(bvh, child);
+    const uint leaf = child >> 31;
+    at_node[*node_count] = place;
+    at_leaf[*leaf_count] = place;
+    *node_count += 1u - leaf;
+    *leaf_count += leaf;
+}
+
 /// Traces rays first..end-1 of the source: the first hits, or with any_hit what kinds of surfaces there are.
 SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
     StreamRay flight[SAHL_STREAM_WIDTH];
@@ -177,13 +189,8 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
         for (uint k = 0; k < nodes; ++k) {
             const uint place = at_node[k];
             visit_node(bvh, flight + place, stacks + place);
-            const uint child = top_of(stacks + place, flight[place].size);
-            prefetch_child(bvh, child);
-            const uint leaf = child >> 31;
-            at_node[node_count] = place;
-            at_leaf[leaf_count] = place;
-            node_count += 1u - leaf;
-            leaf_count += leaf;
+            enlist(bvh, place, top_of(stacks + place, flight[place].size), at_node, &node_count, at_leaf,
+                   &leaf_count);
         }
         const uint leaves = leaf_count;
         leaf_count = 0;
@@ -201,13 +208,7 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
             } else if (top & SAHL_CHILD_LEAF) {
                 visit_leaf(bvh, source, ray, stacks + place, any_hit);
             }
-            const uint child = top_of(stacks + place, ray->size);
-            prefetch_child(bvh, child);
-            const uint leaf = child >> 31;
-            at_node[node_count] = place;
-            at_leaf[leaf_count] = place;
-            node_count += 1u - leaf;
-            leaf_count += leaf;
+            enlist(bvh, place, top_of(stacks + place, ray->size), at_node, &node_count, at_leaf, &leaf_count);
         }
     }
 }
