@@ -24,22 +24,29 @@ typedef struct {
     float extent;  // largest |coordinate| of the scene
 } Bvh;
 
+/// Where in a node the near planes are, in bytes; the far ones are at x ^ 96, y ^ 160, z ^ 224.
+typedef struct {
+    uchar x, y, z;
+} NearPlanes;
+
 /// Of three components each. Packed, as the stream kernel's rays compete for the cache.
 typedef struct {
     float inverse[3];  // 1/direction, finite
     float near_addend[3];
     float far_addend[3];
-    uint octant;  // bit k: inverse[k] is negative
+    uchar octant;  // bit k: inverse[k] is negative
+    // Kept: compilers make branches of finding them at each node, which no processor can predict.
+    NearPlanes near;
 } RayBoxTest;
 
-/// Which float8 of a node's planes the near ones are; the far ones are 3 - x, 5 - y, 7 - z.
-typedef struct {
-    uint x, y, z;
-} NearPlanes;
-
 static inline NearPlanes near_planes(uint octant) {
-    NearPlanes planes = {(octant & 1u) * 3u, 1u + (octant >> 1 & 1u) * 3u, 2u + (octant >> 2) * 3u};
+    NearPlanes planes = {(uchar)((octant & 1u) * 96u), (uchar)(32u + (octant >> 1 & 1u) * 96u),
+                         (uchar)(64u + (octant >> 2) * 96u)};
     return planes;
+}
+
+static inline float8 planes_at(const global BvhNode* node, uint offset) {
+    return *(const global float8*)((const global uchar*)node + offset);
 }
 
 /// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
@@ -54,7 +61,8 @@ static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float ext
     vstore3(r, 0, test.inverse);
     vstore3(near, 0, test.near_addend);
     vstore3(far, 0, test.far_addend);
-    test.octant = (r.x < 0.0f ? 1u : 0u) | (r.y < 0.0f ? 2u : 0u) | (r.z < 0.0f ? 4u : 0u);
+    test.octant = (uchar)((r.x < 0.0f ? 1u : 0u) | (r.y < 0.0f ? 2u : 0u) | (r.z < 0.0f ? 4u : 0u));
+    test.near = near_planes(test.octant);
     return test;
 }
 
@@ -62,45 +70,52 @@ static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float ext
 /// which *enter <= *leave.
 static inline void intersect_children(const global BvhNode* node, const RayBoxTest* test, float t_min,
                                       float t_max, float8* enter, float8* leave) {
-    const global float* planes = (const global float*)node;
-    const NearPlanes near = near_planes(test->octant);
+    const NearPlanes near = test->near;
     const float* r = test->inverse;
     const float* n = test->near_addend;
     const float* f = test->far_addend;
-    float8 near_x = fma(vload8(near.x, planes), (float8)(r[0]), (float8)(n[0]));
-    float8 near_y = fma(vload8(near.y, planes), (float8)(r[1]), (float8)(n[1]));
-    float8 near_z = fma(vload8(near.z, planes), (float8)(r[2]), (float8)(n[2]));
-    float8 far_x = fma(vload8(3u - near.x, planes), (float8)(r[0]), (float8)(f[0]));
-    float8 far_y = fma(vload8(5u - near.y, planes), (float8)(r[1]), (float8)(f[1]));
-    float8 far_z = fma(vload8(7u - near.z, planes), (float8)(r[2]), (float8)(f[2]));
+    float8 near_x = fma(planes_at(node, near.x), (float8)(r[0]), (float8)(n[0]));
+    float8 near_y = fma(planes_at(node, near.y), (float8)(r[1]), (float8)(n[1]));
+    float8 near_z = fma(planes_at(node, near.z), (float8)(r[2]), (float8)(n[2]));
+    float8 far_x = fma(planes_at(node, near.x ^ 96u), (float8)(r[0]), (float8)(f[0]));
+    float8 far_y = fma(planes_at(node, near.y ^ 160u), (float8)(r[1]), (float8)(f[1]));
+    float8 far_z = fma(planes_at(node, near.z ^ 224u), (float8)(r[2]), (float8)(f[2]));
     // No NaN comes here: rays are finite, r is finite and not 0, planes are finite or infinite.
     *enter = SAHL_MAX(SAHL_MAX(near_x, near_y), SAHL_MAX(near_z, (float8)(t_min)));
     *leave = SAHL_MIN(SAHL_MIN(far_x, far_y), SAHL_MIN(far_z, (float8)(t_max)));
 }
 
+/// A child that waits on a stack and where the ray enters it. Side by side, as a stack's top is then one
+/// cache line and rays in flight compete for few.
+typedef struct {
+    uint child;
+    float entry;
+} WaitingChild;
+
 /// Puts the children that are met (enter <= leave) on a stack of `size` entries, the one to visit first on
-/// top, with where the ray enters each. Writes eight entries behind `size`, however many are met. Returns the
-/// new size.
+/// top. Writes eight entries behind `size`, however many are met. Returns the new size.
 static inline uint push_children(const global BvhNode* node, float8 enter, float8 leave, uint octant,
-                                 uint* children, float* entries, uint size) {
+                                 WaitingChild* stack, uint size) {
 #ifdef SAHL_AVX512
     // Last to first.
     const int8 slots = (int8)(7, 6, 5, 4, 3, 2, 1, 0) ^ (int8)((int)octant);
     enter = __builtin_ia32_permvarsf256(enter, slots);
     leave = __builtin_ia32_permvarsf256(leave, slots);
-    int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
-    uchar met = (uchar)mask8_le(enter, leave);
-    vstore8(as_uint8(__builtin_ia32_compresssi256_mask(child, (int8)(0), met)), 0, children + size);
-    vstore8(__builtin_ia32_compresssf256_mask(enter, (float8)(0.0f), met), 0, entries + size);
-    return size + popcount((uint)met);
+    const int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
+    const uint met = mask8_le(enter, leave);
+    const uint16 pairs = __builtin_shufflevector(as_uint8(child), as_uint8(enter), 0, 8, 1, 9, 2, 10, 3, 11,
+                                                 4, 12, 5, 13, 6, 14, 7, 15);
+    vstore8(as_ulong8(__builtin_ia32_compressdi512_mask(as_long8(pairs), (long8)(0), (uchar)met)), 0,
+            (ulong*)(stack + size));
+    return size + popcount(met);
 #else
     uint order = permute_by_octant(mask8_le(enter, leave), octant);
     while (order != 0u) {
         uint position = highest_lane(order);
         order ^= 1u << position;
         uint slot = position ^ octant;
-        children[size] = node->child[slot];
-        entries[size] = ((float*)&enter)[slot];
+        stack[size].child = node->child[slot];
+        stack[size].entry = ((float*)&enter)[slot];
         ++size;
     }
     return size;

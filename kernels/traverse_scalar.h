@@ -24,10 +24,14 @@ static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
     return bvh->leaves + (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
 }
 
+/// Asks for the memory of a child, node or leaf, without a branch on which of them it is, which no processor
+/// can predict.
 static inline void prefetch_child(const Bvh* bvh, uint child) {
-    prefetch_lines(child & SAHL_CHILD_LEAF ? (const global void*)leaf_block(bvh, child)
-                                           : (const global void*)(bvh->nodes + child),
-                   4u);
+    const ulong is_leaf = (ulong)((int)child >> 31);
+    const ulong node = (ulong)(bvh->nodes + child);
+    const ulong leaf = (ulong)leaf_block(bvh, child);
+    const ulong lines = node ^ ((node ^ leaf) & is_leaf);
+    prefetch_lines((const global void*)lines, 4u);
 }
 
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
@@ -106,8 +110,7 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
     }
     const TracedRay in_world = traced_ray(ray->origin, ray->direction, ray, SAHL_WORLD, bvh->extent);
     TracedRay here = in_world;
-    uint waiting[SAHL_LEVELS * SAHL_STACK_SIZE];
-    float entries[SAHL_LEVELS * SAHL_STACK_SIZE];
+    WaitingChild waiting[SAHL_LEVELS * SAHL_STACK_SIZE];
     uint size = 0;
     uint world_size = 0;  // what of it waits in the world while the ray is in an instance
     uint current = 0;
@@ -133,7 +136,7 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
             const global BvhNode* node = bvh->nodes + current;
             float8 enter, leave;
             intersect_children(node, &here.boxes, state->t_min, cull_t, &enter, &leave);
-            size = push_children(node, enter, leave, here.boxes.octant, waiting, entries, size);
+            size = push_children(node, enter, leave, here.boxes.octant, waiting, size);
         }
         do {
             if (state->inside_of != SAHL_WORLD && size == world_size) {
@@ -144,8 +147,8 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
                 return;
             }
             --size;
-        } while (entries[size] > cull_t);
-        current = waiting[size];
+        } while (waiting[size].entry > cull_t);
+        current = waiting[size].child;
     }
 }
 

@@ -38,18 +38,15 @@ typedef struct {
     float cull_t;
     uint index;  // of the ray
     uint size;   // of its stack, whose top is the ray's next step
-    uint spare[3];
-    Ray ray;  // in the same space
     RayShear shear;
     HitState state;
+    Ray ray;  // in the same space
 } __attribute__((aligned(64))) StreamRay;
 
-/// Waiting children and where the ray enters them. An odd number of cache lines, so that the stacks' bottoms
-/// do not compete for the same sets of the cache.
+/// Waiting children. An odd number of cache lines, so that the stacks' bottoms do not compete for the same
+/// sets of the cache.
 typedef struct {
-    uint child[SAHL_LEVELS * SAHL_STACK_SIZE];
-    float entry[SAHL_LEVELS * SAHL_STACK_SIZE];
-    uint spare[16];
+    WaitingChild waiting[SAHL_LEVELS * SAHL_STACK_SIZE + 8u];
 } __attribute__((aligned(64))) StreamStack;
 
 static inline void put_into_space(StreamRay* ray, const TracedRay* traced) {
@@ -58,12 +55,12 @@ static inline void put_into_space(StreamRay* ray, const TracedRay* traced) {
     ray->shear = traced->shear;
 }
 
-static inline uint top_of(const StreamStack* stack, uint size) { return stack->child[size - 1u]; }
+static inline uint top_of(const StreamStack* stack, uint size) { return stack->waiting[size - 1u].child; }
 
 /// Takes the waiting children that begin behind the hit off the stack.
 static inline void drop_hidden(StreamRay* ray, const StreamStack* stack) {
     uint size = ray->size;
-    while (stack->entry[size - 1u] > ray->cull_t) {
+    while (stack->waiting[size - 1u].entry > ray->cull_t) {
         --size;
     }
     ray->size = size;
@@ -83,10 +80,10 @@ static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index
     ray->state = hit_state(0.0f, t_max);
     ray->cull_t = t_max * SAHL_CULL_SLACK;
     ray->index = index;
-    stack->child[0] = SAHL_CHILD_END;
-    stack->entry[0] = -INFINITY;
-    stack->child[1] = 0u;
-    stack->entry[1] = 0.0f;
+    stack->waiting[0].child = SAHL_CHILD_END;
+    stack->waiting[0].entry = -INFINITY;
+    stack->waiting[1].child = 0u;
+    stack->waiting[1].entry = 0.0f;
     ray->size = can_meet_anything(&from) ? 2u : 1u;
 }
 
@@ -98,13 +95,14 @@ static inline void finish_ray(const RaySource* source, const StreamRay* ray, boo
     }
 }
 
-/// Opens the node on top of the stack.
-static inline void visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack) {
+/// Opens the node on top of the stack. Returns the new top.
+static inline uint visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack) {
     const uint size = ray->size - 1u;
-    const global BvhNode* node = bvh->nodes + stack->child[size];
+    const global BvhNode* node = bvh->nodes + stack->waiting[size].child;
     float8 enter, leave;
     intersect_children(node, &ray->boxes, 0.0f, ray->cull_t, &enter, &leave);
-    ray->size = push_children(node, enter, leave, ray->boxes.octant, stack->child, stack->entry, size);
+    ray->size = push_children(node, enter, leave, ray->boxes.octant, stack->waiting, size);
+    return top_of(stack, ray->size);
 }
 
 /// Goes into the instance that was on top of the stack, or comes back out of it.
@@ -125,10 +123,10 @@ static inline void change_space(const Bvh* bvh, const RaySource* source, StreamR
     }
     put_into_space(ray, &traced);
     ray->state.inside_of = i + 1u;
-    stack->child[ray->size] = SAHL_CHILD_LEAVE;
-    stack->entry[ray->size] = -INFINITY;
-    stack->child[ray->size + 1u] = bvh->instances[i].root;
-    stack->entry[ray->size + 1u] = 0.0f;
+    stack->waiting[ray->size].child = SAHL_CHILD_LEAVE;
+    stack->waiting[ray->size].entry = -INFINITY;
+    stack->waiting[ray->size + 1u].child = bvh->instances[i].root;
+    stack->waiting[ray->size + 1u].entry = 0.0f;
     ray->size += 2u;
 }
 
@@ -145,7 +143,7 @@ SAHL_NOINLINE void visit_other_leaf(const Bvh* bvh, const RaySource* source, Str
 
 static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
                               bool any_hit) {
-    const uint child = stack->child[--ray->size];
+    const uint child = stack->waiting[--ray->size].child;
     if (child_kind(child) == SAHL_KIND_TRIANGLE) {
         intersect_triangles((const global TriangleBlock*)leaf_block(bvh, child), &ray->ray, &ray->shear,
                             &ray->boxes, &ray->state, any_hit);
@@ -188,9 +186,8 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
         node_count = 0;
         for (uint k = 0; k < nodes; ++k) {
             const uint place = at_node[k];
-            visit_node(bvh, flight + place, stacks + place);
-            enlist(bvh, place, top_of(stacks + place, flight[place].size), at_node, &node_count, at_leaf,
-                   &leaf_count);
+            const uint top = visit_node(bvh, flight + place, stacks + place);
+            enlist(bvh, place, top, at_node, &node_count, at_leaf, &leaf_count);
         }
         const uint leaves = leaf_count;
         leaf_count = 0;
