@@ -2,7 +2,20 @@
 
 namespace sahl::cli {
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+    std::vector<const CLI::App*> commands;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        commands.push_back(command);
+        for (const CLI::App* nested : commands_of(*command)) commands.push_back(nested);
+    }
+    return commands;
+}
+
+std::string name_of(const CLI::App& command) {
+    const CLI::App* const parent = command.get_parent();
+    if (parent == nullptr || parent->get_parent() == nullptr) return command.get_name();
+    return name_of(*parent) + " " + command.get_name();
+}
 
 std::vector<std::string> names_of(const CLI::Option& option) {
     std::vector<std::string> names;

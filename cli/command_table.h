@@ -8,7 +8,11 @@
 
 namespace sahl::cli {
 
+/// All of them, those of a command behind it.
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
+
+/// As it is typed: "render", "profile diff".
+std::string name_of(const CLI::App& command);
 
 /// "-o", "--output".
 std::vector<std::string> names_of(const CLI::Option& option);

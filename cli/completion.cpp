@@ -27,7 +27,7 @@ std::string bash_values(const CLI::App& command, const std::string& name) {
         if (!takes_value(*option)) continue;
         std::string patterns;
         for (const std::string& spelling : names_of(*option)) {
-            patterns += fmt::format("{}{}:{}", patterns.empty() ? "" : " | ", name, spelling);
+            patterns += fmt::format("{}'{}:{}'", patterns.empty() ? "" : " | ", name, spelling);
         }
         const std::string action = bash_action(*option);
         text += fmt::format("        {}) {}return ;;\n", patterns, action.empty() ? "" : action + "; ");
@@ -43,10 +43,29 @@ std::string option_names(const CLI::App& command) {
     return fmt::format("{}", fmt::join(all, " "));
 }
 
-std::string command_names(const CLI::App& app, const char* separator) {
+/// The commands right below `app`.
+std::string command_names(const CLI::App& app) {
     std::vector<std::string> names;
-    for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
-    return fmt::format("{}", fmt::join(names, separator));
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    return fmt::format("{}", fmt::join(names, " "));
+}
+
+/// All commands as patterns.
+std::string command_patterns(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : commands_of(app)) names.push_back("'" + name_of(*command) + "'");
+    return fmt::format("{}", fmt::join(names, " | "));
+}
+
+/// What completes the first argument: a command's own, and the commands below it.
+std::string bash_argument(const CLI::App& command) {
+    const std::vector<const CLI::Option*> arguments = positionals(command);
+    const std::string below = command_names(command);
+    std::string text = arguments.empty() ? "" : bash_action(*arguments.front());
+    if (below.empty()) return text;
+    if (!text.empty()) text += "; ";
+    text += fmt::format("COMPREPLY+=($(compgen -W '{}' -- \"$current\"))", below);
+    return text;
 }
 
 /// Options before the command whose next word is a value.
@@ -167,6 +186,22 @@ std::string zsh_arguments(const CLI::App& command) {
     return text + "\n";
 }
 
+/// The same, or those of the command below it that is typed.
+std::string zsh_command(const CLI::App& command) {
+    std::string text;
+    for (const CLI::App* nested : command.get_subcommands({})) {
+        text += fmt::format(
+            "                if ((CURRENT > 2)) && [[ $words[2] == {} ]]; then\n"
+            "                    shift words\n"
+            "                    ((--CURRENT))\n"
+            "{}"
+            "                    return\n"
+            "                fi\n",
+            nested->get_name(), zsh_arguments(*nested));
+    }
+    return text + zsh_arguments(command);
+}
+
 }  // namespace
 
 std::string bash_completion(const CLI::App& app) {
@@ -175,23 +210,23 @@ std::string bash_completion(const CLI::App& app) {
     text += bash_start;
     text += fmt::format(
         "    for ((i = 1; i < COMP_CWORD; ++i)); do\n"
-        "        case ${{COMP_WORDS[i]}} in\n"
+        "        case $command${{command:+ }}${{COMP_WORDS[i]}} in\n"
         "            {}) [[ ${{COMP_WORDS[i + 1]}} == = ]] && ((++i)); ((++i)) ;;\n"
-        "            {}) command=${{COMP_WORDS[i]}}; break ;;\n"
+        "            {}) command+=${{command:+ }}${{COMP_WORDS[i]}} ;;\n"
         "        esac\n"
         "    done\n"
         "    case $command:$previous in\n",
-        value_options(app), command_names(app, " | "));
+        value_options(app), command_patterns(app));
     text += bash_values(app, "");
-    for (const CLI::App* command : commands_of(app)) text += bash_values(*command, command->get_name());
+    for (const CLI::App* command : commands_of(app)) text += bash_values(*command, name_of(*command));
     text += fmt::format(
         "    esac\n"
         "    local options words=\n"
         "    case $command in\n"
         "        '') options='{}' words='{}' ;;\n",
-        option_names(app), command_names(app, " "));
+        option_names(app), command_names(app));
     for (const CLI::App* command : commands_of(app)) {
-        text += fmt::format("        {}) options='{}' ;;\n", command->get_name(), option_names(*command));
+        text += fmt::format("        '{}') options='{}' ;;\n", name_of(*command), option_names(*command));
     }
     text +=
         "    esac\n"
@@ -202,9 +237,8 @@ std::string bash_completion(const CLI::App& app) {
         "    case $command in\n"
         "        '') _sahl_words \"$current\" \"$words\" ;;\n";
     for (const CLI::App* command : commands_of(app)) {
-        const std::vector<const CLI::Option*> arguments = positionals(*command);
-        if (arguments.empty()) continue;
-        text += fmt::format("        {}) {} ;;\n", command->get_name(), bash_action(*arguments.front()));
+        const std::string argument = bash_argument(*command);
+        if (!argument.empty()) text += fmt::format("        '{}') {} ;;\n", name_of(*command), argument);
     }
     return text + "    esac\n}\n\ncomplete -F _sahl sahl\n";
 }
@@ -217,7 +251,7 @@ std::string zsh_completion(const CLI::App& app) {
         "    local context state state_descr line\n"
         "    typeset -A opt_args\n"
         "    local -a commands=(\n";
-    for (const CLI::App* command : commands_of(app)) {
+    for (const CLI::App* command : app.get_subcommands({})) {
         text +=
             fmt::format("        '{}:{}'\n", command->get_name(), quoted_for_zsh(command->get_description()));
     }
@@ -229,9 +263,9 @@ std::string zsh_completion(const CLI::App& app) {
         "        command) _describe command commands ;;\n"
         "        arguments)\n"
         "            case $words[1] in\n";
-    for (const CLI::App* command : commands_of(app)) {
+    for (const CLI::App* command : app.get_subcommands({})) {
         text += fmt::format("                {})\n{}                ;;\n", command->get_name(),
-                            zsh_arguments(*command));
+                            zsh_command(*command));
     }
     return text +
            "            esac\n"

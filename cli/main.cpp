@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command_table.h"
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
 #include "cli/interruption.h"
@@ -60,13 +61,13 @@ void print_version(const CommonOptions& common) {
 /// The selected command, or the whole program before there is one.
 CLI::App& selected(CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
-    return commands.empty() ? app : *commands.front();
+    return commands.empty() ? app : selected(*commands.front());
 }
 
 std::string help_hint(CLI::App& app) {
     const CLI::App& command = selected(app);
     return fmt::format("\n'sahl {}--help' shows what there is",
-                       &command == &app ? "" : command.get_name() + " ");
+                       &command == &app ? "" : name_of(command) + " ");
 }
 
 /// What to say of an argument that nothing takes, with the name it may have been meant to be.
@@ -126,9 +127,15 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     app.add_flag("--version", version, "versions of Sahl, the OpenCL device and its driver");
     add_device_options(app, common);
     add_common_options(app, common);
-    const std::vector<Command> commands{add_render_command(app, common),  add_compare_command(app, common),
-                                        add_info_command(app, common),    add_convert_command(app, common),
-                                        add_devices_command(app, common), add_completion_command(app, common),
+    const Command profile = add_profile_command(app, common);
+    const std::vector<Command> commands{add_profile_diff_command(*profile.app, common),
+                                        profile,
+                                        add_render_command(app, common),
+                                        add_compare_command(app, common),
+                                        add_info_command(app, common),
+                                        add_convert_command(app, common),
+                                        add_devices_command(app, common),
+                                        add_completion_command(app, common),
                                         add_man_command(app, common)};
     try {
         parse(app, argc, argv);
@@ -149,7 +156,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
         if (command.app->parsed()) return command.run();
     }
     std::vector<std::string> names;
-    for (const Command& command : commands) names.push_back(command.app->get_name());
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
     throw Error(ExitCode::usage, "which command? " + either(names) + help_hint(app));
 }
 

@@ -76,8 +76,8 @@ Footer footer_of(const CLI::App& command) {
 }
 
 std::string command_section(const CLI::App& command) {
-    std::string text = fmt::format(".SS {}\n", escaped("sahl " + command.get_name()));
-    std::string usage = bold("sahl " + command.get_name()) + " [" + italic("OPTIONS") + "]";
+    std::string text = fmt::format(".SS {}\n", escaped("sahl " + name_of(command)));
+    std::string usage = bold("sahl " + name_of(command)) + " [" + italic("OPTIONS") + "]";
     for (const CLI::Option* option : positionals(command)) usage += " " + italic(option->get_single_name());
     text += usage + "\n.PP\n" + escaped(command.get_description()) + ".\n";
     for (const std::string& note : footer_of(command).notes) text += escaped(note) + "\n";
@@ -105,6 +105,7 @@ const Entries& exit_statuses() {
         {"4", "OpenCL device or driver"},
         {"5", "out of memory"},
         {"6", "the output was not written"},
+        {"9", "a row of a profile is slower than it may be"},
         {"70", "internal error, worth a report"},
         {"130, 143", "interrupted by SIGINT, by SIGTERM"},
     };
@@ -135,7 +136,7 @@ std::string man_page(const CLI::App& app) {
     text += ".SH NAME\nsahl \\- " + escaped("OpenCL ray tracer") + "\n";
     text += ".SH SYNOPSIS\n";
     for (const CLI::App* command : commands_of(app)) {
-        text += bold("sahl " + command->get_name()) + " [" + italic("OPTIONS") + "]";
+        text += bold("sahl " + name_of(*command)) + " [" + italic("OPTIONS") + "]";
         for (const CLI::Option* option : positionals(*command))
             text += " " + italic(option->get_single_name());
         text += "\n.br\n";

@@ -16,6 +16,7 @@ enum class ExitCode : int {
     device = 4,
     memory = 5,
     output = 6,
+    performance = 9,
     internal = 70,
 };
 

@@ -110,6 +110,11 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         {{"sahl", "compare", "a.png", "sahl"}, {"sahl.bash"}},
         {{"sahl", "completion", ""}, {"bash", "zsh"}},
         {{"sahl", "devices", ""}, {}},
+        {{"sahl", "profile", "di"}, {"diff"}},
+        {{"sahl", "profile", "diff", "--fa"}, {"--fail-if"}},
+        {{"sahl", "profile", "--fa"}, {}},
+        {{"sahl", "profile", "diff", "--color", "a"}, {"always", "auto"}},
+        {{"sahl", "profile", "diff", "scene.j"}, {"scene.json"}},
     };
     for (const Case& item : cases) {
         std::string line;
@@ -118,13 +123,13 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         CHECK(room.complete(item.typed) == item.replies);
     }
     CHECK(room.complete({"sahl", ""}) ==
-          Words{"compare", "completion", "convert", "devices", "info", "man", "render"});
+          Words{"compare", "completion", "convert", "devices", "info", "man", "profile", "render"});
 }
 
 TEST_CASE("completion: bash offers exactly the options of --help", "[cli]") {
     const BashRoom room;
     for (const std::string command :
-         {"render", "compare", "info", "convert", "devices", "completion", "man"}) {
+         {"render", "profile", "compare", "info", "convert", "devices", "completion", "man"}) {
         Words expected;
         for (const std::string& line : lines_of(output_of({command, "--help"}))) {
             std::istringstream words(line);

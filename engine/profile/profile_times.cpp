@@ -1,0 +1,194 @@
+#include "engine/profile/profile_times.h"
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+
+namespace sahl {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int format_version = 1;
+
+/// Adds row by row; what belongs together adds up repetition by repetition.
+class RowTable {
+public:
+    explicit RowTable(std::vector<double> wall) : wall_(std::move(wall)) {}
+
+    void add(const std::string& kernel, std::uint32_t generation, const std::vector<double>& samples) {
+        if (std::find(order_.begin(), order_.end(), kernel) == order_.end()) order_.push_back(kernel);
+        add_to(kernels_[kernel].total, samples);
+        add_to(kernels_[kernel].generations[generation], samples);
+    }
+
+    std::vector<TimedRow> rows() const {
+        std::vector<TimedRow> rows{{"wall", std::nullopt, wall_}};
+        for (const std::string& kernel : order_) {
+            const KernelTimes& times = kernels_.at(kernel);
+            rows.push_back({kernel, std::nullopt, times.total});
+            for (const auto& [generation, samples] : times.generations) {
+                rows.push_back({kernel, generation, samples});
+            }
+        }
+        return rows;
+    }
+
+private:
+    struct KernelTimes {
+        std::vector<double> total;
+        std::map<std::uint32_t, std::vector<double>> generations;
+    };
+
+    void add_to(std::vector<double>& sums, const std::vector<double>& samples) const {
+        sums.resize(wall_.size());
+        std::transform(sums.begin(), sums.end(), samples.begin(), sums.begin(), std::plus<>());
+    }
+
+    std::vector<double> wall_;
+    std::map<std::string, KernelTimes> kernels_;
+    std::vector<std::string> order_;
+};
+
+/// A value in a profile's file, which knows where it stands.
+class Value {
+public:
+    Value(const Json& json, const std::string& file, std::string path)
+        : json_(json), file_(file), path_(std::move(path)) {}
+
+    Value at(const char* key) const {
+        if (!json_.is_object() || !json_.contains(key)) fail(fmt::format("has no \"{}\"", key));
+        return {json_.at(key), file_, path_ + "/" + key};
+    }
+    std::vector<Value> elements() const {
+        if (!json_.is_array()) fail("is no array");
+        std::vector<Value> values;
+        for (std::size_t i = 0; i < json_.size(); ++i) {
+            values.push_back({json_[i], file_, fmt::format("{}/{}", path_, i)});
+        }
+        return values;
+    }
+    std::string text() const {
+        if (!json_.is_string()) fail("is no string");
+        return json_.get<std::string>();
+    }
+    std::uint64_t whole() const {
+        if (!json_.is_number_unsigned()) fail("is no whole number");
+        return json_.get<std::uint64_t>();
+    }
+    int small() const { return static_cast<int>(std::min<std::uint64_t>(whole(), 1U << 30U)); }
+    double milliseconds() const {
+        if (!json_.is_number() || json_.get<double>() < 0) fail("is no number from 0 on");
+        return json_.get<double>();
+    }
+    bool is_null() const { return json_.is_null(); }
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(ExitCode::scene,
+                    fmt::format("{}: not a profile that 'sahl profile --export-json' wrote: {} {}", file_,
+                                path_.empty() ? "it" : path_, what));
+    }
+
+private:
+    const Json& json_;
+    const std::string& file_;
+    std::string path_;
+};
+
+ProfileEnvironment environment_of(const Value& json) {
+    ProfileEnvironment environment;
+    environment.sahl = json.at("sahl").text();
+    environment.scene = json.at("scene").text();
+    environment.scene_hash = json.at("scene_hash").text();
+    environment.kernel_hash = json.at("kernel_hash").text();
+    environment.camera = json.at("camera").text();
+    environment.width = json.at("width").small();
+    environment.height = json.at("height").small();
+    if (const Value crop = json.at("crop"); !crop.is_null()) {
+        environment.crop.emplace();
+        for (const Value& edge : crop.elements()) environment.crop->push_back(edge.small());
+    }
+    environment.depth = json.at("depth").small();
+    environment.spp = json.at("spp").small();
+    environment.seed = json.at("seed").whole();
+    environment.ray_budget = static_cast<std::uint32_t>(json.at("ray_budget").small());
+    environment.build_quality = json.at("build_quality").text();
+    environment.device = json.at("device").text();
+    environment.platform = json.at("platform").text();
+    environment.driver = json.at("driver").text();
+    environment.cpu = json.at("cpu").text();
+    environment.threads = json.at("threads").small();
+    return environment;
+}
+
+std::vector<double> samples_of(const Value& row, std::size_t repetitions) {
+    const Value list = row.at("samples_ms");
+    std::vector<double> samples;
+    for (const Value& sample : list.elements()) samples.push_back(sample.milliseconds());
+    if (samples.size() != repetitions)
+        list.fail(fmt::format("has not one time for each of {} repetitions", repetitions));
+    return samples;
+}
+
+Json parse_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw Error(ExitCode::scene,
+                    fmt::format("{}: cannot be read; 'sahl profile SCENE --export-json FILE' writes profiles",
+                                path.string()));
+    }
+    try {
+        return Json::parse(file);
+    } catch (const Json::exception& error) {
+        throw Error(ExitCode::scene, fmt::format("{}: no JSON: {}", path.string(), error.what()));
+    }
+}
+
+}  // namespace
+
+std::string name_of(const TimedRow& row) {
+    return row.generation ? fmt::format("{}/{}", row.kernel, *row.generation) : row.kernel;
+}
+
+ProfileTimes times_of(const Profile& profile) {
+    std::vector<double> wall;
+    for (const ProfileRepetition& repetition : profile.repetitions) wall.push_back(repetition.time.wall_ms);
+    RowTable table(std::move(wall));
+    for (const ProfileRow& row : profile.rows) {
+        table.add(row.kernel, row.generation.value_or(0), row.measures.samples_ms);
+    }
+    return {profile.environment, table.rows()};
+}
+
+ProfileTimes read_profile_times(const std::filesystem::path& path) {
+    const Json json = parse_file(path);
+    const std::string file = path.string();
+    const Value document(json, file, "");
+    if (const std::uint64_t version = document.at("version").whole(); version != format_version) {
+        throw Error(ExitCode::scene,
+                    fmt::format("{}: a profile in version {} of the format; this program reads "
+                                "version {}: profile again with it",
+                                file, version, format_version));
+    }
+    ProfileTimes times{environment_of(document.at("environment")), {}};
+    std::vector<double> wall;
+    for (const Value& repetition : document.at("repetitions").elements()) {
+        wall.push_back(repetition.at("wall_ms").milliseconds());
+    }
+    if (wall.empty()) document.at("repetitions").fail("is empty");
+    const std::size_t repetitions = wall.size();
+    RowTable table(std::move(wall));
+    for (const Value& row : document.at("rows").elements()) {
+        table.add(row.at("kernel").text(), static_cast<std::uint32_t>(row.at("generation").small()),
+                  samples_of(row, repetitions));
+    }
+    times.rows = table.rows();
+    return times;
+}
+
+}  // namespace sahl
