@@ -1,7 +1,9 @@
 // Closest hits are the engine's own kernels. Its shadow kernels compute light as well: here is what they do
 // of traversal, on rays of a batch.
 
-#include "kernels/intersect.cl"
+#include "kernels/intersect_packet.cl"
+#include "kernels/intersect_scalar.cl"
+#include "kernels/intersect_stream.cl"
 
 kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* leaves,
                             const global float* polygon_vertices, const global DeviceInstance* instances,

@@ -173,7 +173,9 @@ void render_job(Job& job, Renderer& renderer, Device& device, const MemoryPlan& 
 ExitCode render(const RenderOptions& options, const CommonOptions& common) {
     Scene scene = load_scene(options.scene, options.loading);
     Job job = plan_job(options, scene);
-    Device device(common.device);
+    DeviceOptions device_options = common.device;
+    device_options.traversal = options.traversal;
+    Device device(device_options);
     take_driver_failures();
     log_debug(fmt::format("device {} ({}), driver {}", device.info().name, device.info().platform,
                           device.info().driver));

@@ -111,12 +111,17 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
     set_words(*compression, {compression_names()});
 }
 
-void add_build_option(CLI::App& command, BuildQuality& quality) {
+void add_tree_options(CLI::App& command, RenderOptions& options) {
     add_choice<BuildQuality>(
-        command, "--build-quality", "QUALITY", quality,
+        command, "--build-quality", "QUALITY", options.build_quality,
         {{"high", BuildQuality::high}, {"fast", BuildQuality::fast}},
         "of the tree over the primitives: fast builds it in less time, and rays take longer "
         "(default: high)");
+    add_choice<Traversal>(
+        command, "--traversal", "WAY", options.traversal,
+        {{"packet", Traversal::packet}, {"stream", Traversal::stream}, {"scalar", Traversal::scalar}},
+        "of rays through the tree, which changes no image: neighbours together, single rays "
+        "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
 }
 
 void add_memory_options(CLI::App& command, RenderOptions& options) {
@@ -145,7 +150,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_image_options(command, options);
     add_aov_option(command, options.aovs);
     add_encoding_options(command, options.encoding);
-    add_build_option(command, options.build_quality);
+    add_tree_options(command, options);
     add_memory_options(command, options);
 }
 

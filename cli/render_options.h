@@ -21,6 +21,7 @@ struct RenderOptions {
     std::optional<SampleRange> samples;
     std::uint64_t seed = 0;
     BuildQuality build_quality = BuildQuality::high;
+    std::optional<Traversal> traversal;
     std::vector<Aov> aovs;
     OutputSettings encoding;
     std::optional<std::uint64_t> max_memory;  ///< bytes

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "engine/core/error.h"
 #include "engine/device/device_choice.h"
 #include "engine/device/device_impl.h"
 #include "engine/device/pocl_environment.h"
@@ -116,6 +117,18 @@ void check_usable(const FoundDevice& found) {
 
 }  // namespace
 
+const char* name_of(Traversal traversal) {
+    switch (traversal) {
+        case Traversal::scalar:
+            return "scalar";
+        case Traversal::packet:
+            return "packet";
+        case Traversal::stream:
+            return "stream";
+    }
+    throw Error(ExitCode::internal, "a traversal without a name");
+}
+
 std::vector<DeviceInfo> list_devices(int threads) { return infos(find_devices(threads)); }
 
 Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
@@ -129,6 +142,7 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
     const std::size_t best_group = chosen.info.is_cpu ? cpu_local_size : gpu_local_size;
     impl_->local_size =
         std::min(options.work_group_size > 0 ? options.work_group_size : best_group, largest_group);
+    impl_->traversal = options.traversal.value_or(chosen.info.is_cpu ? Traversal::packet : Traversal::scalar);
     impl_->build_options = options.build_options;
     impl_->rays_per_item = chosen.info.is_cpu ? cpu_rays_per_item : gpu_rays_per_item;
     cl_int status = CL_SUCCESS;
@@ -147,6 +161,8 @@ bool Device::zero_copy() const { return impl_->info.is_cpu; }
 std::size_t Device::local_size() const { return impl_->local_size; }
 
 std::uint32_t Device::rays_per_item() const { return impl_->rays_per_item; }
+
+Traversal Device::traversal() const { return impl_->traversal; }
 
 const std::string& Device::build_options() const { return impl_->build_options; }
 

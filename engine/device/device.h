@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,10 +28,23 @@ struct DeviceInfo {
     std::size_t max_allocation = 0;  ///< bytes of one buffer
 };
 
+/// Ways of rays through the tree (kernels/traverse_*.h).
+enum class Traversal : std::uint8_t {
+    scalar,  ///< ray by ray: any device
+    packet,  ///< neighbours together, on CPUs: rays that go much the same way
+    stream,  ///< single rays in turn, on CPUs: rays that go any way
+};
+
+/// As in the kernels' names.
+const char* name_of(Traversal traversal);
+
 struct DeviceOptions {
     std::string selector;  ///< empty: PoCL's CPU; digits: an index; else part of a name
     int threads = 0;  ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
     std::size_t work_group_size = 0;  ///< work-items; 0: the device's best. No image depends on it
+    /// Nothing: packets on CPUs, for reflected and refracted rays keep together, ray by ray elsewhere. No
+    /// image depends on it.
+    std::optional<Traversal> traversal{};
     /// More options for the OpenCL compiler: -DSAHL_PLAIN_OPENCL for kernels without the host's SIMD
     /// builtins, -DSAHL_NO_AVX512 for those of AVX2 at most. No image depends on them.
     std::string build_options{};
@@ -58,6 +72,9 @@ public:
     std::size_t local_size() const;
     /// Rays that one work-item handles one after the other (SAHL_RAYS_PER_ITEM in the kernels).
     std::uint32_t rays_per_item() const;
+
+    /// The way that rays take through the tree.
+    Traversal traversal() const;
 
     /// DeviceOptions::build_options.
     const std::string& build_options() const;

@@ -6,7 +6,7 @@
 
 namespace sahl {
 
-/// A file of kernels/, byte for byte. `name` is its name there, e.g. "intersect.cl".
+/// A file of kernels/, byte for byte. `name` is its name there, e.g. "shade.cl".
 struct EmbeddedKernel {
     std::string_view name;
     std::string_view text;

@@ -65,7 +65,7 @@ private:
 /// Binaries come from and go to the program cache (program_cache.h).
 class Program {
 public:
-    /// `sources`: file names below kernels/, e.g. {"generate.cl", "intersect.cl"}.
+    /// `sources`: file names below kernels/, e.g. {"generate.cl", "shade.cl"}.
     /// `options`: further compiler options, e.g. "-DNAME=1".
     /// Throws Error(device) with device, options, log and the source lines the log speaks of.
     Program(Device& device, const std::vector<std::string>& sources, const std::string& options = "");

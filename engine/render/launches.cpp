@@ -1,7 +1,8 @@
 #include "engine/render/launches.h"
 
-#include <cstddef>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "kernels/rays_per_item.h"
 
@@ -20,36 +21,33 @@ Launch per_block(const WaitingBatch& in_work) {
     return {compact_blocks(in_work.count), in_work.generation, in_work.count};
 }
 
-std::array<Kernel, 3> one_of_each(Program& program, const std::string& prefix) {
-    return {program.kernel(prefix + "scalar"), program.kernel(prefix + "packet"),
-            program.kernel(prefix + "stream")};
+/// The launch of a kernel that traces rays one by one, or together as many as its work-items take.
+Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, std::uint32_t rays_of_packets,
+                      std::uint32_t rays_of_streams) {
+    std::uint32_t rays = wavefront.device.rays_per_item();
+    if (wavefront.device.traversal() == Traversal::packet) rays = rays_of_packets;
+    if (wavefront.device.traversal() == Traversal::stream) rays = rays_of_streams;
+    return per_ray(rays, in_work.generation, in_work.count);
 }
 
-/// The launch of a kernel that traces rays one by one, or together as many as its work-items take.
-Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, Traversal traversal,
-                      std::uint32_t rays_of_packets, std::uint32_t rays_of_streams) {
-    std::uint32_t rays = wavefront.device.rays_per_item();
-    if (traversal == Traversal::packet) rays = rays_of_packets;
-    if (traversal == Traversal::stream) rays = rays_of_streams;
-    return per_ray(rays, in_work.generation, in_work.count);
+/// A file of kernels/, and the kernel in it, that traces rays in the device's way.
+std::string traversing(const char* kernel, const Device& device) {
+    return fmt::format("{}_{}", kernel, name_of(device.traversal()));
 }
 
 }  // namespace
 
-Traversal traversal_for(const Device& device, std::uint32_t generation) {
-    if (!device.info().is_cpu) return Traversal::scalar;
-    return generation < 2 ? Traversal::packet : Traversal::stream;
-}
-
 Program build_wavefront_program(Device& device) {
-    return {device, {"generate.cl", "intersect.cl", "shade.cl", "shadow.cl", "compact.cl"}};
+    return {device,
+            {"generate.cl", traversing("intersect", device) + ".cl", "shade.cl",
+             traversing("shadow", device) + ".cl", "compact.cl"}};
 }
 
-WavefrontKernels::WavefrontKernels(Program& program)
+WavefrontKernels::WavefrontKernels(const Device& device, Program& program)
     : generate(program.kernel("generate")),
-      intersect(one_of_each(program, "intersect_")),
+      intersect(program.kernel(traversing("intersect", device))),
       shade(program.kernel("shade")),
-      shadow(one_of_each(program, "shadow_")),
+      shadow(program.kernel(traversing("shadow", device))),
       count_children(program.kernel("count_children")),
       sum_children(program.kernel("sum_children")),
       compact(program.kernel("compact")) {}
@@ -64,11 +62,10 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    const Traversal traversal = traversal_for(wavefront.device, in_work.generation);
-    Kernel& intersect = wavefront.kernels.intersect[static_cast<std::size_t>(traversal)];
-    intersect.launch(per_traced_ray(wavefront, in_work, traversal, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
-                     scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances, scene.constants,
-                     batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
+    wavefront.kernels.intersect.launch(per_traced_ray(wavefront, in_work, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
+                                       scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                                       scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
+                                       in_work.count);
 }
 
 void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out) {
@@ -85,12 +82,11 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    const Traversal traversal = traversal_for(wavefront.device, in_work.generation);
-    Kernel& shadow = wavefront.kernels.shadow[static_cast<std::size_t>(traversal)];
-    shadow.launch(per_traced_ray(wavefront, in_work, traversal, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
-                  scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances, scene.primitives,
-                  scene.materials, scene.lights, scene.constants, q.hit_ids, q.shadow_surfaces,
-                  q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
+    wavefront.kernels.shadow.launch(per_traced_ray(wavefront, in_work, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
+                                    scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+                                    scene.primitives, scene.materials, scene.lights, scene.constants,
+                                    q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
+                                    q.capacity, in_work.count);
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {

@@ -1,7 +1,6 @@
 // The kernels of a wave with their arguments: one function a kernel.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "engine/device/program.h"
@@ -11,30 +10,16 @@
 
 namespace sahl {
 
-/// Of which WavefrontKernels are made.
+/// Of which WavefrontKernels are made: with the device's way of traversal.
 Program build_wavefront_program(Device& device);
-
-/// Ways of traversal (kernels/traverse_*.h). Hits are the same bits whichever it is.
-enum class Traversal : std::uint8_t {
-    scalar,  ///< ray by ray: any device
-    packet,  ///< for rays that go much the same way, on CPUs
-    stream,  ///< for rays that go any way, on CPUs
-};
 
 /// The kernels of kernels/*.cl. What no launch asks for is never compiled.
 struct WavefrontKernels {
-    explicit WavefrontKernels(Program& program);
+    WavefrontKernels(const Device& device, Program& program);
 
-    Kernel generate;
-    std::array<Kernel, 3> intersect;  ///< by Traversal
-    Kernel shade;
-    std::array<Kernel, 3> shadow;  ///< by Traversal
+    Kernel generate, intersect, shade, shadow;
     Kernel count_children, sum_children, compact;
 };
-
-/// The way that suits a generation's rays and their shadow rays: those of the camera and the first that
-/// surfaces reflect and transmit keep together, later ones part.
-Traversal traversal_for(const Device& device, std::uint32_t generation);
 
 /// What the launches work with; all of it outlives them.
 struct Wavefront {

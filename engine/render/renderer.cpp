@@ -38,7 +38,7 @@ std::uint64_t pixel_count(const Crop& crop) {
 
 struct Renderer::Impl {
     Impl(Device& on, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
-        : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(program) {
+        : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(on, program) {
         test_before_first_use(on, program, kernels);
         device_scene = make_device_scene(on, scene, job, quality);
     }

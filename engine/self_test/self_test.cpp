@@ -138,7 +138,7 @@ SelfTestReport self_test::run_waves(Device& device, WavefrontKernels& kernels,
 
 SelfTestReport run_self_test(Device& device) {
     Program program = build_wavefront_program(device);
-    WavefrontKernels kernels(program);
+    WavefrontKernels kernels(device, program);
     Bench bench(device, kernels);
     SelfTestReport report = test_wavefront(bench, test_waves());
     if (report.failed() != nullptr) return report;

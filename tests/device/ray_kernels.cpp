@@ -3,9 +3,13 @@
 namespace sahl::tests {
 
 const char* const ray_kernels = R"(
-#include "kernels/intersect.cl"
+#include "kernels/intersect_scalar.cl"
+#include "kernels/intersect_packet.cl"
+#include "kernels/intersect_stream.cl"
 #include "kernels/shade.cl"
-#include "kernels/shadow.cl"
+#include "kernels/shadow_scalar.cl"
+#include "kernels/shadow_packet.cl"
+#include "kernels/shadow_stream.cl"
 
 kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices,
                         const global DeviceInstance* instances, const global uint* children,

@@ -3,8 +3,8 @@
 
 namespace sahl::tests {
 
-/// OpenCL C for KernelRunner: kernels/intersect.cl, shade.cl and shadow.cl, then kernels that call the
-/// functions behind them.
+/// OpenCL C for KernelRunner: the kernels of intersect_*.cl, shade.cl and shadow_*.cl, then kernels that call
+/// the functions behind them.
 extern const char* const ray_kernels;
 
 }  // namespace sahl::tests

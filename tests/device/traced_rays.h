@@ -59,10 +59,10 @@ struct TestSpawn {
     bool reflects = false, transmits = false;
     TestRay reflected, transmitted;
     float unshadowed = 0;  ///< light of all lamps as if nothing were in between, first channel
-    float arrived = 0;     ///< what kernels/shadow.cl left of it
+    float arrived = 0;     ///< what kernels/shadow_*.cl left of it
 };
 
-/// A point that lamps shine on, as shading leaves it for kernels/shadow.cl.
+/// A point that lamps shine on, as shading leaves it for kernels/shadow_*.cl.
 struct TestLitPoint {
     glm::vec3 position{0};
     std::uint32_t exclude = SAHL_NO_PRIMITIVE;  ///< the primitive it lies on,
@@ -89,11 +89,11 @@ public:
         return scalar().upload(instances);
     }
 
-    /// Closest hits by kernels/intersect.cl.
+    /// Closest hits by kernels/intersect_*.cl.
     std::vector<TestHit> intersect(const DeviceScene& scene, const std::vector<TestRay>& rays);
 
-    /// What kernels/shadow.cl lets through of `brought`, which has one colour for each of the scene's lights
-    /// and, for each light, each point: index light · points + point.
+    /// What kernels/shadow_*.cl lets through of `brought`, which has one colour for each of the scene's
+    /// lights and, for each light, each point: index light · points + point.
     std::vector<glm::vec3> arriving(const DeviceScene& scene, const std::vector<TestLitPoint>& points,
                                     const std::vector<glm::vec3>& brought);
 
@@ -108,8 +108,8 @@ public:
     std::vector<TestSurface> surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                       const std::vector<TestHit>& hits);
 
-    /// Children and light of hits by kernels/shade.cl and shadow.cl; nothing for rays that miss. Directions
-    /// have to be unit vectors, emission black.
+    /// Children and light of hits by kernels/shade.cl and shadow_scalar.cl; nothing for rays that miss.
+    /// Directions have to be unit vectors, emission black.
     std::vector<TestSpawn> shade(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                  const std::vector<TestHit>& hits);
 

@@ -117,18 +117,22 @@ TEST_CASE("invariance: budgets, repetitions, crops and parts of the samples chan
     }
 }
 
-TEST_CASE("invariance: work-group sizes and versions of the kernels change no bit", "[invariance]") {
-    DeviceOptions variants[5];
+TEST_CASE("invariance: work-group sizes, versions of the kernels and ways of traversal change no bit",
+          "[invariance]") {
+    DeviceOptions variants[7];
     variants[1].work_group_size = 2;
     variants[2].work_group_size = 16;
     variants[3].build_options = "-DSAHL_PLAIN_OPENCL";
     variants[4].build_options = "-DSAHL_NO_AVX512";
+    variants[5].traversal = Traversal::stream;
+    variants[6].traversal = Traversal::scalar;
     std::vector<std::vector<float>> expected;
     for (const DeviceOptions& variant : variants) {
         Device device(variant);
         std::size_t i = 0;
         for (const Subject& subject : subjects()) {
-            INFO(subject.name << ", groups of " << device.local_size() << " " << variant.build_options);
+            INFO(subject.name << ", groups of " << device.local_size() << " " << variant.build_options << " "
+                              << name_of(device.traversal()));
             Renderer renderer(device, subject.scene);
             const std::vector<float> pixels = pixels_of(device, renderer, subject.settings);
             if (&variant == variants) {

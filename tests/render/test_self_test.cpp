@@ -57,7 +57,7 @@ TEST_CASE("self-test: right kernels are not refused, wherever rays go", "[self_t
     }
     Device& device = test_device();
     Program program = build_wavefront_program(device);
-    WavefrontKernels kernels(program);
+    WavefrontKernels kernels(device, program);
     const SelfTestReport report = self_test::run_waves(device, kernels, waves);
     for (const KernelTest& test : report.kernels) {
         INFO(test.kernel << ": " << test.checked << " checked, worst " << test.worst);
@@ -94,8 +94,6 @@ const std::vector<Fault> faults{
     {"intersect", "crossings_of_width.h", "SAHL_MIN(last, SAHL_MAX(bottom, top))", "last"},
     {"intersect", "hit.h", "front ? SAHL_ID_BACK_ONLY : SAHL_ID_FRONT_ONLY",
      "front ? SAHL_ID_BACK_ONLY : 0u"},
-    {"intersect", "traverse_stream.h", "entry[size - 1u] > ray->cull_t",
-     "entry[size - 1u] > 0.5f * ray->cull_t"},
     {"intersect", "traverse_packet.h", "vload8(0, group_far)", "0.5f * vload8(0, group_far)"},
     {"shadow", "packet.h", "backward ? lo - e : hi + e", "backward ? hi + e : lo - e"},
     {"intersect", "traverse_packet.h", "(int16)((int)i + 1)", "(int16)((int)i + 2)"},
@@ -134,10 +132,10 @@ const std::vector<Fault> faults{
     {"shadow", "hit.h", "enter_is_origin = fabs(enter) < fabs(leave)", "enter_is_origin = false"},
     {"shadow", "light.h", "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 1.0f",
      "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 2.0f"},
-    {"shadow", "shadow.cl", "through *= load3", "through = load3"},
-    {"shadow", "shadow.cl", "capacity, i, sum + light", "capacity, i, light"},
-    {"shadow", "shadow.cl", "SAHL_HIT_NOTHING ? 1.0f : 0.0f", "SAHL_HIT_NOTHING ? 1.0f : 0.01f"},
-    {"shadow", "shadow.cl", "load_soa3(work->light, 3u * l, work->capacity, i)",
+    {"shadow", "shadow_work.h", "through *= load3", "through = load3"},
+    {"shadow", "shadow_work.h", "capacity, i, sum + light", "capacity, i, light"},
+    {"shadow", "shadow_work.h", "SAHL_HIT_NOTHING ? 1.0f : 0.0f", "SAHL_HIT_NOTHING ? 1.0f : 0.01f"},
+    {"shadow", "shadow_work.h", "load_soa3(work->light, 3u * l, work->capacity, i)",
      "load_soa3(work->light, 0u, work->capacity, i)"},
     {"count_children", "compact.cl", "shadow_rays += outcome / SAHL_OUTCOME_SHADOW_RAY",
      "shadow_rays += outcome / SAHL_OUTCOME_SHADOW_RAY != 0u"},

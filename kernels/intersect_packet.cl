@@ -1,0 +1,18 @@
+// Rays -> closest hits, by packets of neighbours.
+
+#include "kernels/traverse_packet.h"
+
+kernel void intersect_packet(const global BvhNode* nodes, const global uchar* leaves,
+                             const global float* polygon_vertices, const global DeviceInstance* instances,
+                             const SceneConstants scene, const global float* rays, const global uint* ray_ids,
+                             global float* hits, global uint* hit_ids, const uint capacity,
+                             const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const uint first = (uint)get_global_id(0) * SAHL_PACKET_RAYS;
+    if (first < count) {
+        Packet packet;
+        load_packet(&packet, rays, ray_ids, capacity, first, count);
+        intersect_packet_of_rays(&bvh, &packet);
+        store_packet(&packet, hits, hit_ids, capacity, first, count);
+    }
+}

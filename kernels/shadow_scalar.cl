@@ -1,0 +1,27 @@
+// Shadow rays -> the light that arrives, added to their hits' contributions in the order of the lights; ray
+// by ray.
+
+#include "kernels/shadow_work.h"
+
+kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leaves,
+                          const global float* polygon_vertices, const global DeviceInstance* instances,
+                          const global DevicePrimitive* primitives, const global DeviceMaterial* materials,
+                          const global DeviceLight* lights, const SceneConstants scene,
+                          const global uint* hit_ids, const global float* shadow_surfaces,
+                          const global float* shadow_light, const global uint* outcomes,
+                          global float* contributions, const uint capacity, const uint count) {
+    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
+                             shadow_light, outcomes,  contributions, capacity};
+    SAHL_FOR_EACH_RAY(i, count) {
+        float3 brought;
+        for (uint l = 0; l < scene.light_count; ++l) {
+            if (has_shadow_ray(&work, l, i, &brought)) {
+                const Ray ray = ray_to_light(&work, l, i);
+                const float t_max = shadow_t_max(lights + l);
+                add_light(&work, i,
+                          brought * transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));
+            }
+        }
+    }
+}
