@@ -13,6 +13,7 @@
 #include "engine/film/image_io.h"
 #include "engine/profile/compare_profiles.h"
 #include "engine/profile/profile.h"
+#include "engine/profile/profile_page.h"
 #include "engine/profile/profile_times.h"
 #include "engine/profile/statistics.h"
 #include "engine/render/renderer.h"

@@ -1,0 +1,21 @@
+// A profile as a page for browsers: charts and tables, in one file that asks the network for nothing.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sahl {
+
+/// A picture on the page.
+struct PagePicture {
+    std::string title;
+    std::vector<unsigned char> png;  ///< the file
+};
+
+/// The page (HTML, with its style and scripts) of a profile in JSON, as docs/sahl-profile.schema.json
+/// describes it. The figures it shows are those of the JSON, which is in it.
+std::string profile_page(std::string_view profile_json, std::span<const PagePicture> pictures);
+
+}  // namespace sahl

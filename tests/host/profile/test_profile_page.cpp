@@ -1,0 +1,216 @@
+// The page of a profile: whole in itself, and in a browser its figures are those of the JSON.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+#include "engine/profile/profile_page.h"
+#include "tests/support/browser.h"
+#include "tests/support/made_profile.h"
+
+namespace sahl::tests {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Two pixels, black and white.
+const std::vector<unsigned char> small_png{
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+    0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0xd1, 0x49, 0x20, 0x56, 0x00,
+    0x00, 0x00, 0x0b, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60, 0xf8, 0x0f, 0x00, 0x01, 0x02, 0x01,
+    0x00, 0x42, 0xbe, 0xbc, 0x68, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+std::string page_of(const Json& profile) {
+    const std::vector<PagePicture> pictures{{"Image </script><b>", small_png}};
+    return profile_page(profile.dump(), pictures);
+}
+
+/// What lies in the element with this id, up to the next that has one.
+std::string part_of(const std::string& dom, const std::string& id) {
+    const std::size_t begin = dom.find("id=\"" + id + "\"");
+    REQUIRE(begin != dom.npos);
+    return dom.substr(begin, dom.find(" id=\"", begin + 4) - begin);
+}
+
+/// The pattern's groups, for each place where it matches.
+std::vector<std::smatch> all_of(const std::string& text, const std::string& pattern) {
+    const std::regex regex(pattern);
+    return {std::sregex_iterator(text.begin(), text.end(), regex), std::sregex_iterator()};
+}
+
+/// A cell says `value`: all of it in data-value, rounded to four digits in what is shown.
+void check_cell(const std::smatch& cell, const Json& value) {
+    const std::string exact = cell[1];
+    std::string shown = cell[2];
+    INFO(exact << " shown as " << shown << ", in the profile " << value);
+    if (value.is_null()) {
+        CHECK(exact.empty());
+        CHECK(shown == "–");
+    } else if (value.is_string()) {
+        CHECK(exact == value.get<std::string>());
+        CHECK(shown == exact);
+    } else {
+        shown.erase(std::remove(shown.begin(), shown.end(), ','), shown.end());
+        const auto number = value.get<double>();
+        CHECK(std::stod(exact) == number);
+        CHECK(std::abs(std::stod(shown) - number) <= 6e-4 * number + 6e-7);
+    }
+}
+
+void check_table(const BrowsedPage& page, const Json& profile, const std::string& name, std::size_t columns) {
+    const std::string table = part_of(page.dom, name);
+    const auto headings = all_of(table, "data-key=\"([a-z0-9_]+)\"");
+    const auto cells = all_of(table, "<td[^>]* data-value=\"([^\"]*)\">([^<]*)</td>");
+    const Json& rows = profile.at(name);
+    INFO(name);
+    REQUIRE(headings.size() == columns);
+    REQUIRE(cells.size() == columns * rows.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        check_cell(cells[i], rows[i / columns].at(headings[i % columns][1].str()));
+    }
+}
+
+/// No browser: nothing to see.
+bool skipped() {
+    if (!has_browser()) WARN("SKIPPED: chromium is not installed");
+    return !has_browser();
+}
+
+TEST_CASE("profile page: one file that names no other", "[profile]") {
+    const std::string page = page_of(made_profile());
+    CHECK_THAT(page, Catch::StartsWith("<!DOCTYPE html>") && Catch::EndsWith("</html>\n"));
+    CHECK_THAT(page, Catch::Contains("default-src 'none'"));
+    // Placeholders are gone, and namespaces of SVG are the only addresses.
+    CHECK(page.find("/*{") == page.npos);
+    CHECK(all_of(page, "https?://").size() == all_of(page, "http://www\\.w3\\.org/2000/svg").size());
+    CHECK(all_of(page, "<(link|iframe|object|embed)|@import|url\\(").empty());
+    // No string of the profile ends the script that it is in.
+    CHECK(all_of(page, "</script>").size() == 3);
+    CHECK(page.find("<b>CPU") == page.npos);
+}
+
+TEST_CASE("profile page: its tables are the profile's, in a browser", "[profile]") {
+    if (skipped()) return;
+    const Json profile = made_profile();
+    const BrowsedPage page = browse(page_of(profile));
+    CHECK(page.messages == "");
+    CHECK_THAT(page.dom, Catch::Contains("<title>made.json – Sahl profile</title>"));
+    check_table(page, profile, "rows", 24);
+    check_table(page, profile, "kernel_totals", 23);
+    check_table(page, profile, "generation_totals", 22);
+    check_table(page, profile, "host_steps", 5);
+    CHECK_THAT(part_of(page.dom, "environment"), Catch::Contains("made &lt;b&gt;CPU&lt;/b&gt;") &&
+                                                     Catch::Contains("Portable &lt;/script&gt; Language"));
+    const std::string summary = part_of(page.dom, "summary");
+    const auto wall = all_of(summary, "data-key=\"wall_ms\" data-value=\"([^\"]*)\"");
+    REQUIRE(wall.size() == 1);
+    CHECK(std::stod(wall[0][1]) == profile["wall_ms"].get<double>());
+}
+
+TEST_CASE("profile page: its charts are of the profile's figures, in a browser", "[profile]") {
+    if (skipped()) return;
+    const Json profile = made_profile();
+    const BrowsedPage page = browse(page_of(profile));
+    CHECK(page.messages == "");
+
+    std::map<std::string, double> totals;
+    for (const Json& row : profile["kernel_totals"]) totals[row["kernel"]] += row["ms_median"].get<double>();
+    const auto kernels = all_of(part_of(page.dom, "frame"), "data-kernel=\"([a-z_]+)\" data-ms=\"([^\"]+)\"");
+    REQUIRE(kernels.size() == totals.size());
+    for (const std::smatch& bar : kernels) CHECK(std::stod(bar[2]) == Approx(totals.at(bar[1])));
+    const auto steps = all_of(part_of(page.dom, "frame"), "data-step=\"([a-z_]*)\" data-ms=\"([^\"]+)\"");
+    REQUIRE(steps.size() == 3);
+    CHECK(steps[2][1].str().empty());
+    CHECK(std::stod(steps[2][2]) == profile["unattributed_ms"].get<double>());
+
+    const Json& rows = profile["rows"];
+    const auto find_row = [&rows](const std::string& kernel, const std::string& generation) {
+        return *std::find_if(rows.begin(), rows.end(), [&](const Json& row) {
+            return row["kernel"] == kernel && std::to_string(row["generation"].get<int>()) == generation;
+        });
+    };
+    const std::string place = "data-kernel=\"([a-z_]+)\" data-generation=\"([0-9]+)\" ";
+    const auto waterfall = all_of(part_of(page.dom, "waterfall"), place + "data-ms=\"([^\"]+)\"");
+    REQUIRE(waterfall.size() == rows.size());
+    for (const std::smatch& bar : waterfall) {
+        CHECK(std::stod(bar[3]) == find_row(bar[1], bar[2])["ms_median"].get<double>());
+    }
+    const auto rays = all_of(part_of(page.dom, "rays"), place + "data-rays=\"([0-9]+)\"");
+    REQUIRE(rays.size() == 6);
+    for (const std::smatch& bar : rays) {
+        CHECK(std::stoull(bar[3]) == find_row(bar[1], bar[2])["rays_in"].get<std::uint64_t>());
+    }
+    const auto roofline =
+        all_of(part_of(page.dom, "roofline"), place + "data-intensity=\"([^\"]+)\" data-gflop=\"([^\"]+)\"");
+    REQUIRE(roofline.size() == rows.size());
+    for (const std::smatch& circle : roofline) {
+        const Json row = find_row(circle[1], circle[2]);
+        CHECK(std::stod(circle[3]) ==
+              Approx(row["flop_per_ray"].get<double>() / row["bytes_per_ray"].get<double>()));
+        CHECK(std::stod(circle[4]) == row["gflop_per_s"].get<double>());
+    }
+    const auto walls = all_of(part_of(page.dom, "repetitions"), "data-wall=\"([^\"]+)\"");
+    REQUIRE(walls.size() == profile["repetitions"].size());
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        CHECK(std::stod(walls[i][1]) == profile["repetitions"][i]["wall_ms"].get<double>());
+    }
+}
+
+TEST_CASE("profile page: a heading sorts its table, what is not known last", "[profile]") {
+    if (skipped()) return;
+    Json profile = made_profile();
+    profile["rows"][3]["rays_out"] = nullptr;
+    const int clicks = GENERATE(1, 2);
+    std::string script = "const button = document.querySelector('#rows [data-key=rays_out] button');";
+    for (int i = 0; i < clicks; ++i) script += "button.click();";
+    const BrowsedPage page = browse(page_of(profile), {.script = script});
+    CHECK(page.messages == "");
+    const auto cells = all_of(part_of(page.dom, "rows"), "<td[^>]* data-value=\"([^\"]*)\">");
+    REQUIRE(cells.size() == 24 * profile["rows"].size());
+    std::vector<double> values;
+    for (std::size_t i = 5; i + 24 < cells.size(); i += 24) values.push_back(std::stod(cells[i][1]));
+    if (clicks == 1) {
+        CHECK(std::is_sorted(values.begin(), values.end(), std::greater<>()));
+    } else {
+        CHECK(std::is_sorted(values.begin(), values.end()));
+    }
+    CHECK(values.front() != values.back());
+    CHECK(cells[cells.size() - 24 + 5][1].str().empty());
+}
+
+TEST_CASE("profile page: it fits a phone, and is readable in the light and in the dark", "[profile]") {
+    if (skipped()) return;
+    const bool dark = GENERATE(false, true);
+    const int width = GENERATE(390, 1200);
+    // Chromium's windows have at least 500 pixels: the page gets less of it.
+    const std::string script =
+        "document.documentElement.style.width = '" + std::to_string(width) + "px';" + R"(
+        dispatchEvent(new Event("resize"));
+        const style = getComputedStyle(document.body), root = document.documentElement;
+        const free = [...document.querySelectorAll("body *")].filter(
+            part => !part.parentElement.closest(".scroll, .bar, svg"));
+        root.dataset.reach = Math.max(...free.map(part => Math.ceil(part.getBoundingClientRect().right)));
+        const channels = color => color.match(/\d+/g).map(Number).map(c => c / 255)
+            .map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+        const light = color => channels(color).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
+        const back = light(style.backgroundColor);
+        const contrast = color => (Math.max(back, light(color)) + 0.05) / (Math.min(back, light(color)) + 0.05);
+        root.dataset.back = back;
+        root.dataset.contrast = contrast(style.color);
+        root.dataset.faint = contrast(getComputedStyle(document.querySelector("p")).color);
+        root.dataset.pictures = [...document.images].map(image => image.naturalWidth + "x" + image.naturalHeight).join();
+    )";
+    const BrowsedPage page = browse(page_of(made_profile()), {width, dark, script});
+    CHECK(page.messages == "");
+    INFO(width << (dark ? " dark" : " light"));
+    CHECK(std::stoi(page.data("reach")) <= width);
+    CHECK(std::stoi(page.data("reach")) > width - 100);
+    CHECK((std::stod(page.data("back")) < 0.1) == dark);
+    CHECK(std::stod(page.data("contrast")) >= 7);
+    CHECK(std::stod(page.data("faint")) >= 4.5);  // WCAG 2.2, AA
+    CHECK(page.data("pictures") == "2x1");
+}
+
+}  // namespace
+}  // namespace sahl::tests
