@@ -135,6 +135,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
                                         add_info_command(app, common),
                                         add_convert_command(app, common),
                                         add_devices_command(app, common),
+                                        add_warm_command(app, common),
                                         add_completion_command(app, common),
                                         add_man_command(app, common)};
     try {

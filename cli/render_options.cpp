@@ -29,41 +29,6 @@ std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
     return aovs;
 }
 
-void add_image_options(CLI::App& command, RenderOptions& options) {
-    add_value(
-        command, "--camera", "NAME", [&options](const std::string& text) { options.camera = text; },
-        "one of the scene's cameras (default: its first)");
-    add_value(
-        command, "--size", "WxH",
-        [&options](const std::string& text) { options.size = read_size("--size", text); },
-        "pixels (default: the scene's)");
-    add_value(
-        command, "--depth", "N[,N...]",
-        [&options](const std::string& text) { options.depths = read_depths("--depth", text); },
-        "generations of rays after the camera's, 0 to 64 (default: the scene's)");
-    add_value(
-        command, "--spp", "N",
-        [&options](const std::string& text) {
-            options.spp = read_whole<int>("--spp", text, 1, most_samples);
-        },
-        "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
-    add_value(
-        command, "--samples", "A..B",
-        [&options](const std::string& text) { options.samples = read_samples("--samples", text); },
-        "only samples A to B - 1 of the --spp of each pixel");
-    add_value(
-        command, "--seed", "N",
-        [&options](const std::string& text) {
-            options.seed =
-                read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
-        },
-        "of the random numbers (default: 0)");
-    add_value(
-        command, "--crop", "X0,Y0,X1,Y1",
-        [&options](const std::string& text) { options.crop = read_crop("--crop", text); },
-        "only these pixels; X1 and Y1 are just outside");
-}
-
 void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
     OptionWords words{.list = true, .alone = std::string(all_aovs)};
     for (const AovName& name : aov_names) words.words.emplace_back(name.name);
@@ -111,6 +76,43 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
     set_words(*compression, {compression_names()});
 }
 
+}  // namespace
+
+void add_image_options(CLI::App& command, RenderOptions& options) {
+    add_value(
+        command, "--camera", "NAME", [&options](const std::string& text) { options.camera = text; },
+        "one of the scene's cameras (default: its first)");
+    add_value(
+        command, "--size", "WxH",
+        [&options](const std::string& text) { options.size = read_size("--size", text); },
+        "pixels (default: the scene's)");
+    add_value(
+        command, "--depth", "N[,N...]",
+        [&options](const std::string& text) { options.depths = read_depths("--depth", text); },
+        "generations of rays after the camera's, 0 to 64 (default: the scene's)");
+    add_value(
+        command, "--spp", "N",
+        [&options](const std::string& text) {
+            options.spp = read_whole<int>("--spp", text, 1, most_samples);
+        },
+        "samples a pixel, 1 to 16384 (default: 1, the pixel's centre)");
+    add_value(
+        command, "--samples", "A..B",
+        [&options](const std::string& text) { options.samples = read_samples("--samples", text); },
+        "only samples A to B - 1 of the --spp of each pixel");
+    add_value(
+        command, "--seed", "N",
+        [&options](const std::string& text) {
+            options.seed =
+                read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
+        },
+        "of the random numbers (default: 0)");
+    add_value(
+        command, "--crop", "X0,Y0,X1,Y1",
+        [&options](const std::string& text) { options.crop = read_crop("--crop", text); },
+        "only these pixels; X1 and Y1 are just outside");
+}
+
 void add_tree_options(CLI::App& command, RenderOptions& options) {
     add_choice<BuildQuality>(
         command, "--build-quality", "QUALITY", options.build_quality,
@@ -124,20 +126,14 @@ void add_tree_options(CLI::App& command, RenderOptions& options) {
         "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
 }
 
-void add_memory_options(CLI::App& command, RenderOptions& options) {
+void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit) {
     add_value(
         command, "--max-mem", "SIZE",
-        [&options](const std::string& text) { options.max_memory = read_bytes("--max-mem", text); },
+        [&limit](const std::string& text) { limit = read_bytes("--max-mem", text); },
         "most memory to use, such as 500M or 8G; the OpenCL driver's own comes on top (default: the "
         "machine's)")
         ->group("Memory");
-    command
-        .add_flag("--dry-run", options.dry_run,
-                  "checks everything and says what would be done; renders nothing")
-        ->group("Memory");
 }
-
-}  // namespace
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_scene_argument(command, "SCENE", options.scene);
@@ -151,7 +147,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_aov_option(command, options.aovs);
     add_encoding_options(command, options.encoding);
     add_tree_options(command, options);
-    add_memory_options(command, options);
+    add_memory_limit(command, options.max_memory);
+    command
+        .add_flag("--dry-run", options.dry_run,
+                  "checks everything and says what would be done; renders nothing")
+        ->group("Memory");
 }
 
 }  // namespace sahl::cli

@@ -28,7 +28,15 @@ struct RenderOptions {
     bool dry_run = false;
 };
 
-/// The scene, the images, their content and their encoding. `options` has to outlive `command`.
+/// Camera, size, depth, samples, seed and crop. `options` has to outlive `command`, here and below.
+void add_image_options(CLI::App& command, RenderOptions& options);
+
+/// How the tree is built and walked through.
+void add_tree_options(CLI::App& command, RenderOptions& options);
+
+void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit);
+
+/// The scene, the images, their content and their encoding.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
 }  // namespace sahl::cli

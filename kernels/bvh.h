@@ -8,6 +8,7 @@
 #ifndef SAHL_BVH_H
 #define SAHL_BVH_H
 
+#include "kernels/count_visits.h"
 #include "kernels/device_types.h"
 #include "kernels/math.h"
 #include "kernels/simd.h"
@@ -22,6 +23,9 @@ typedef struct {
     const global float* polygon_vertices;
     const global DeviceInstance* instances;
     float extent;  // largest |coordinate| of the scene
+#ifdef SAHL_COUNT_VISITS
+    global ulong* counts;  // of the work-item
+#endif
 } Bvh;
 
 /// Where in a node the near planes are, in bytes; the far ones are at x ^ 96, y ^ 160, z ^ 224.

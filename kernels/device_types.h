@@ -289,6 +289,14 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 #define SAHL_AOV_UINTS 3
 #define SAHL_AOV_NO_ID 0xffffffffu
 
+// What kernels that count (SAHL_COUNT_VISITS) add up, ulongs for each work-item.
+#define SAHL_COUNT_NODES 0       // nodes opened: by packets once for all their rays
+#define SAHL_COUNT_LEAVES 1      // leaf blocks loaded, the same
+#define SAHL_COUNT_LEAF_BYTES 2  // of these blocks
+#define SAHL_COUNT_FLOP 3        // floating-point operations of tests that every ray of a node or block has
+#define SAHL_COUNT_LIT 4         // shadow rays that reach their light
+#define SAHL_COUNTS 5
+
 // Parents that one work-item compacts.
 #define SAHL_COMPACT_BLOCK 256u
 

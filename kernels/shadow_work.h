@@ -47,6 +47,7 @@ static inline Ray ray_to_light(const ShadowWork* work, uint l, uint i) {
 /// once, in order.
 static inline float3 transmittance(const Bvh* bvh, const ShadowWork* work, const Ray* ray, float t_max,
                                    uint occlusion) {
+    SAHL_COUNT(bvh, SAHL_COUNT_LIT, occlusion == SAHL_HIT_OPAQUE ? 0u : 1u);
     if (occlusion != SAHL_HIT_TRANSPARENT) {
         return (float3)(occlusion == SAHL_HIT_NOTHING ? 1.0f : 0.0f);
     }

@@ -215,6 +215,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
             if (!(child & SAHL_CHILD_LEAF)) {
                 const global BvhNode* node = bvh->nodes + child;
                 float8 entry;
+                SAHL_COUNT_NODE(bvh, SAHL_INTERVAL_FLOP);
                 uint order = permute_by_octant(children_of_interest(node, &pass, &entry), octant);
                 while (order != 0u) {
                     uint position = highest_lane(order);
@@ -222,6 +223,9 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint slot = position ^ octant;
                     uint next = node->child[slot];
                     prefetch_child(bvh, next);
+                    SAHL_COUNT(bvh, SAHL_COUNT_FLOP,
+                               16u * popcount(met) *
+                                   (pass.axes.common_origin ? SAHL_COMMON_BOX_FLOP : SAHL_BOX_FLOP));
                     uint meeting = groups_that_meet(node, slot, &pass, rays, cull_far, met);
                     stack[size] = next;
                     entries[size] = ((float*)&entry)[slot];
@@ -237,6 +241,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                 continue;
             }
             bool taken = false;
+            SAHL_COUNT_BLOCK(bvh, child_kind(child), 16u * popcount(met));
             if (child_kind(child) == SAHL_KIND_TRIANGLE) {
                 const global TriangleBlock* block = (const global TriangleBlock*)leaf_block(bvh, child);
                 LazyPlanes planes;

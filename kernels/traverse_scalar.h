@@ -37,6 +37,7 @@ static inline void prefetch_child(const Bvh* bvh, uint child) {
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
                                   const RayBoxTest* boxes, HitState* state, bool any_hit) {
     const global uchar* block = leaf_block(bvh, child);
+    SAHL_COUNT_BLOCK(bvh, child_kind(child), 1u);
     switch (child_kind(child)) {
         case SAHL_KIND_TRIANGLE:
             intersect_triangles((const global TriangleBlock*)block, ray, shear, boxes, state, any_hit);
@@ -135,6 +136,7 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
         } else {
             const global BvhNode* node = bvh->nodes + current;
             float8 enter, leave;
+            SAHL_COUNT_NODE(bvh, SAHL_NODE_FLOP);
             intersect_children(node, &here.boxes, state->t_min, cull_t, &enter, &leave);
             size = push_children(node, enter, leave, here.boxes.octant, waiting, size);
         }

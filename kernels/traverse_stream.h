@@ -100,6 +100,7 @@ static inline uint visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack
     const uint size = ray->size - 1u;
     const global BvhNode* node = bvh->nodes + stack->waiting[size].child;
     float8 enter, leave;
+    SAHL_COUNT_NODE(bvh, SAHL_NODE_FLOP);
     intersect_children(node, &ray->boxes, 0.0f, ray->cull_t, &enter, &leave);
     ray->size = push_children(node, enter, leave, ray->boxes.octant, stack->waiting, size);
     return top_of(stack, ray->size);
@@ -145,6 +146,7 @@ static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay
                               bool any_hit) {
     const uint child = stack->waiting[--ray->size].child;
     if (child_kind(child) == SAHL_KIND_TRIANGLE) {
+        SAHL_COUNT_BLOCK(bvh, SAHL_KIND_TRIANGLE, 1u);
         intersect_triangles((const global TriangleBlock*)leaf_block(bvh, child), &ray->ray, &ray->shear,
                             &ray->boxes, &ray->state, any_hit);
     } else {

@@ -9,6 +9,7 @@
 #include "engine/device/device_choice.h"
 #include "engine/device/device_impl.h"
 #include "engine/device/pocl_environment.h"
+#include "engine/device/pocl_programs.h"
 
 namespace sahl {
 namespace {
@@ -171,6 +172,8 @@ std::size_t Device::max_work_items() const { return impl_->info.is_pocl ? pocl_s
 MemoryAccountant& Device::memory() { return impl_->memory; }
 
 LaunchLog& Device::launches() { return impl_->launches; }
+
+std::size_t count_compilations() { return count_compiled_kernels() - count_unpacked_kernels(); }
 
 void Device::flush() { check_cl(impl_->queue.flush(), "handing commands to device " + impl_->info.name); }
 

@@ -97,6 +97,10 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Kernels that PoCL has compiled in this process: files in its private folder that no program cache put
+/// there. Those of other drivers are not known.
+std::size_t count_compilations();
+
 /// Whether the disk of the folder that PoCL compiles into is full, or the folder is gone: why it aborts.
 /// Async-signal-safe.
 bool driver_lacks_room();

@@ -16,6 +16,7 @@ struct PendingLaunch {
     std::string kernel;
     std::uint32_t generation;
     std::uint64_t items;
+    std::uint64_t lanes;
     cl::Event event;
 };
 

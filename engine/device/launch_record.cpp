@@ -27,6 +27,7 @@ std::vector<LaunchRecord> LaunchLog::take() {
         records.push_back({.kernel = launch.kernel,
                            .generation = launch.generation,
                            .items = launch.items,
+                           .lanes = launch.lanes,
                            .queued_ns = time(CL_PROFILING_COMMAND_QUEUED),
                            .submitted_ns = time(CL_PROFILING_COMMAND_SUBMIT),
                            .started_ns = time(CL_PROFILING_COMMAND_START),

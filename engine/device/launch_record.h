@@ -13,6 +13,7 @@ struct LaunchRecord {
     std::string kernel;
     std::uint32_t generation = 0;
     std::uint64_t items = 0;  ///< rays (or slots) that the launch worked on
+    std::uint64_t lanes = 0;  ///< places for them, padding included
     std::uint64_t queued_ns = 0;
     std::uint64_t submitted_ns = 0;
     std::uint64_t started_ns = 0;

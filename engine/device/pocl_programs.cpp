@@ -19,10 +19,12 @@ namespace fs = std::filesystem;
 
 // PoCL has one folder a program, with this file and the shared objects of the kernels below.
 constexpr const char* program_file = "program.bc";
+constexpr const char* compiled_kernel = ".so";
 
 struct KnownFolders {
     std::mutex mutex;
     std::map<std::string, fs::path> by_key;  ///< relative to PoCL's folder
+    std::size_t unpacked = 0;                ///< kernels, since the process began
 };
 
 KnownFolders& known() {
@@ -104,11 +106,19 @@ bool unpack_compiled(const std::string& key, const std::string& packed) {
         fs::create_directories(target.parent_path());
         std::ofstream file(target, std::ios::binary);
         file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-        if (file.flush()) continue;
+        if (file.flush()) {
+            if (path.extension() == compiled_kernel) ++known().unpacked;
+            continue;
+        }
         fs::remove(target);  // PoCL would run what is cut short
         return false;
     }
     return true;
+}
+
+std::size_t count_unpacked_kernels() {
+    const std::lock_guard lock(known().mutex);
+    return known().unpacked;
 }
 
 }  // namespace sahl

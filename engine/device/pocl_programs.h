@@ -4,6 +4,7 @@
 // every kernel once more, for local sizes that are never launched: longer than the first image.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,5 +22,8 @@ std::optional<std::string> pack_compiled(const std::string& key);
 /// Puts packed files where PoCL finds them at the next build of the program. Files that are there
 /// stay: this process may run their code. False if they are no packed files or cannot be written.
 bool unpack_compiled(const std::string& key, const std::string& packed);
+
+/// Kernels that unpack_compiled() has brought into PoCL's folder.
+std::size_t count_unpacked_kernels();
 
 }  // namespace sahl

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/core/host_steps.h"
 #include "engine/device/device_impl.h"
 #include "engine/device/kernel_source.h"
 #include "engine/device/pocl_environment.h"
@@ -114,6 +115,7 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
 }
 
 std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
+    const HostStep step("compile");
     std::string options = fmt::format("-cl-std=CL1.2 -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
     for (const std::string& option : {device.build_options(), more}) {
         if (!option.empty()) options += " " + option;
@@ -236,7 +238,10 @@ void Kernel::enqueue(const Launch& launch, std::uint32_t argument_count) {
         device.impl().queue.enqueueNDRangeKernel(impl_->kernel, cl::NullRange, cl::NDRange(global),
                                                  cl::NDRange(local), nullptr, log.enabled ? &event : nullptr);
     if (status != CL_SUCCESS) check_cl(status, "launching kernel " + impl_->name);
-    if (log.enabled) log.pending.push_back({impl_->name, launch.generation, launch.items, std::move(event)});
+    if (log.enabled) {
+        log.pending.push_back({impl_->name, launch.generation, launch.items,
+                               std::uint64_t{global} * launch.items_per_work_item, std::move(event)});
+    }
     if (!impl_->launched) {
         impl_->launched = true;
         impl_->program->launched.insert(impl_->name);

@@ -20,7 +20,8 @@ struct Launch {
     std::size_t work_items =
         0;  ///< rounded up to whole work-groups; at most Device::max_work_items(); 0: no launch
     std::uint32_t generation = 0;
-    std::uint64_t items = 0;  ///< rays or slots worked on, for the record
+    std::uint64_t items = 0;                ///< rays or slots worked on, for the record
+    std::uint32_t items_per_work_item = 1;  ///< that a work-item has room for, for the record
 };
 
 /// A kernel of a program. Arguments are buffers or trivially copyable values (shared structs,

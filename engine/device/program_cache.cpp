@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "engine/core/atomic_file.h"
+#include "engine/core/hash.h"
 
 namespace sahl {
 namespace {
@@ -40,25 +41,6 @@ struct Header {
 constexpr std::array<char, 8> file_magic = {'S', 'A', 'H', 'L', 'C', 'O', 'D', 'E'};
 constexpr std::uint64_t file_version = 2;
 constexpr std::size_t checked_from = offsetof(Header, key_bytes);
-
-/// FNV-1a, 64 bits (Fowler, Noll, Vo): each step is a bijection of the state, so that no change
-/// of a single byte goes unseen.
-std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484222325u) {
-    for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-    return hash;
-}
-
-std::optional<fs::path> cache_folder() {
-    const auto variable = [](const char* name) -> std::optional<fs::path> {
-        const char* value = std::getenv(name);
-        if (value == nullptr || *value == '\0') return std::nullopt;
-        return fs::path(value);
-    };
-    if (auto folder = variable("SAHL_CACHE_DIR")) return folder;
-    if (const auto folder = variable("XDG_CACHE_HOME")) return *folder / "sahl";
-    if (const auto folder = variable("HOME")) return *folder / ".cache" / "sahl";
-    return std::nullopt;
-}
 
 fs::path file_of(const fs::path& folder, const std::string& key) {
     return folder / fmt::format("{:016x}{}", fnv1a(key), file_extension);
@@ -149,6 +131,18 @@ void prune(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::optional<fs::path> cache_folder() {
+    const auto variable = [](const char* name) -> std::optional<fs::path> {
+        const char* value = std::getenv(name);
+        if (value == nullptr || *value == '\0') return std::nullopt;
+        return fs::path(value);
+    };
+    if (auto folder = variable("SAHL_CACHE_DIR")) return folder;
+    if (const auto folder = variable("XDG_CACHE_HOME")) return *folder / "sahl";
+    if (const auto folder = variable("HOME")) return *folder / ".cache" / "sahl";
+    return std::nullopt;
+}
 
 std::optional<CachedProgram> load_program(const std::string& key) {
     const auto folder = cache_folder();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/core/host_steps.h"
 
 namespace sahl {
 namespace {
@@ -109,6 +110,7 @@ void Film::clear(std::span<const std::uint32_t> pixels) {
 }
 
 Image Film::resolve(int samples) const {
+    const HostStep step("resolve");
     Image image{
         .width = width_, .height = height_, .channels = 3, .pixels = std::vector<float>(sums_.size())};
     const double divisor = one * samples;

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "engine/core/atomic_file.h"
+#include "engine/core/host_steps.h"
 #include "engine/film/image_decode.h"
 #include "engine/film/image_encode.h"
 #include "engine/film/image_format.h"
@@ -23,7 +24,11 @@ std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings
 
 void write_image(const fs::path& path, const Image& image, const OutputSettings& settings,
                  std::span<const AovImage> aovs) {
-    const std::vector<unsigned char> file = encode(path, image, aovs, encoding_of(path, settings), settings);
+    const std::vector<unsigned char> file = [&] {
+        const HostStep step("encode");
+        return encode(path, image, aovs, encoding_of(path, settings), settings);
+    }();
+    const HostStep step("write");
     write_file(path, std::as_bytes(std::span(file)));
 }
 

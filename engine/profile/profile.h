@@ -50,8 +50,8 @@ struct TimeBreakdown {
     double wall_ms = 0;
     double device_busy_ms = 0;
     double device_idle_ms = 0;
-    std::map<std::string, double> exposed_ms;  ///< idle by the host step that ran
-    double unattributed_ms = 0;                ///< idle while no host step ran
+    std::map<std::string, double> exposed_ms{};  ///< idle by the host step that ran
+    double unattributed_ms = 0;                  ///< idle while no host step ran
 };
 
 struct ProfileRepetition {
@@ -64,10 +64,10 @@ enum class ProfilePhase { setup, frame };
 struct ProfileHostStep {
     std::string name;
     ProfilePhase phase = ProfilePhase::frame;
-    std::uint64_t calls = 0;         ///< of one repetition
-    double ms_total = 0;             ///< without the steps within it
-    double ms_exposed = 0;           ///< of that: the device was idle
-    std::vector<double> samples_ms;  ///< of ms_total
+    std::uint64_t calls = 0;           ///< of one repetition
+    double ms_total = 0;               ///< without the steps within it
+    double ms_exposed = 0;             ///< of that: the device was idle
+    std::vector<double> samples_ms{};  ///< of ms_total
 };
 
 /// What the device can do, as measured.

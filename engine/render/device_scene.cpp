@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/host_steps.h"
 #include "engine/render/host_scene.h"
 #include "engine/render/leaf_blocks.h"
 
@@ -52,6 +53,7 @@ DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRe
     out.plan = plan_memory(measure_scene_memory(scene, host, bound), job, accountant.limit());
     held.give_back(bound.building);
 
+    const HostStep step("upload");
     MemoryReservation building(accountant, bytes_of(host), "the scene for the device");
     Uploader upload(device, building);
     out.nodes = upload.move(host.bvh.nodes, "BVH nodes");

@@ -12,6 +12,7 @@
 #include <glm/matrix.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/host_steps.h"
 #include "engine/render/place_instances.h"
 #include "engine/render/two_floats.h"
 #include "engine/scene/validate.h"
@@ -125,6 +126,7 @@ bool is_finite(const Bounds& bounds) {
 }  // namespace
 
 HostScene make_host_scene(const Scene& scene, BuildQuality quality) {
+    const HostStep step("build BVH");
     HostScene out;
     out.lowered = lower_scene(scene);
     std::vector<BuildPrimitive> primitives = std::exchange(out.lowered.build_primitives, {});

@@ -1,5 +1,6 @@
 #include "engine/render/launches.h"
 
+#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@ namespace sahl {
 namespace {
 
 Launch per_ray(std::uint32_t rays_per_item, std::uint32_t generation, std::uint32_t count) {
-    return {(count + rays_per_item - 1) / rays_per_item, generation, count};
+    return {(count + rays_per_item - 1) / rays_per_item, generation, count, rays_per_item};
 }
 
 Launch per_ray(const Wavefront& wavefront, const WaitingBatch& in_work) {
@@ -18,7 +19,7 @@ Launch per_ray(const Wavefront& wavefront, const WaitingBatch& in_work) {
 }
 
 Launch per_block(const WaitingBatch& in_work) {
-    return {compact_blocks(in_work.count), in_work.generation, in_work.count};
+    return {compact_blocks(in_work.count), in_work.generation, in_work.count, SAHL_COMPACT_BLOCK};
 }
 
 /// The launch of a kernel that traces rays one by one, or together as many as its work-items take.
@@ -35,12 +36,35 @@ std::string traversing(const char* kernel, const Device& device) {
     return fmt::format("{}_{}", kernel, name_of(device.traversal()));
 }
 
+/// Launches a kernel that traces rays; counting ones add up what they visit.
+template <class... Arguments>
+void launch_traversal(Wavefront& wavefront, Kernel& kernel, const Launch& launch,
+                      KernelVisits GenerationVisits::*sums, const Arguments&... arguments) {
+    if (wavefront.visits == nullptr) {
+        kernel.launch(launch, arguments...);
+        return;
+    }
+    kernel.launch(launch, arguments..., wavefront.visits->next());
+    GenerationVisits& generation = wavefront.visits->generations[launch.generation];
+    wavefront.visits->add_to(generation.*sums, launch.work_items, generation.lit);
+}
+
+std::uint64_t count_hits(RayQueues& queues, std::uint32_t count) {
+    const auto primitives = queues.hit_ids.map<std::uint32_t>(MapMode::read, count);
+    return static_cast<std::uint64_t>(
+        std::count_if(primitives.begin(), primitives.end(),
+                      [](std::uint32_t primitive) { return primitive != SAHL_NO_PRIMITIVE; }));
+}
+
 }  // namespace
 
-Program build_wavefront_program(Device& device) {
-    return {device,
-            {"generate.cl", traversing("intersect", device) + ".cl", "shade.cl",
-             traversing("shadow", device) + ".cl", "compact.cl"}};
+std::vector<std::string> wavefront_sources(const Device& device) {
+    return {"generate.cl", traversing("intersect", device) + ".cl", "shade.cl",
+            traversing("shadow", device) + ".cl", "compact.cl"};
+}
+
+Program build_wavefront_program(Device& device, bool counting) {
+    return {device, wavefront_sources(device), counting ? "-DSAHL_COUNT_VISITS" : ""};
 }
 
 WavefrontKernels::WavefrontKernels(const Device& device, Program& program)
@@ -62,10 +86,14 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    wavefront.kernels.intersect.launch(per_traced_ray(wavefront, in_work, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
-                                       scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                                       scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
-                                       in_work.count);
+    launch_traversal(wavefront, wavefront.kernels.intersect,
+                     per_traced_ray(wavefront, in_work, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
+                     &GenerationVisits::intersect, scene.nodes, scene.leaves, scene.polygon_vertices,
+                     scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
+                     in_work.count);
+    if (wavefront.visits != nullptr) {
+        wavefront.visits->generations[in_work.generation].hits += count_hits(q, in_work.count);
+    }
 }
 
 void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out) {
@@ -82,11 +110,12 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    wavefront.kernels.shadow.launch(per_traced_ray(wavefront, in_work, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
-                                    scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
-                                    scene.primitives, scene.materials, scene.lights, scene.constants,
-                                    q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
-                                    q.capacity, in_work.count);
+    launch_traversal(wavefront, wavefront.kernels.shadow,
+                     per_traced_ray(wavefront, in_work, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
+                     &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.polygon_vertices,
+                     scene.instances, scene.primitives, scene.materials, scene.lights, scene.constants,
+                     q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity,
+                     in_work.count);
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {
@@ -99,7 +128,7 @@ void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {
 void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work) {
     RayQueues& q = wavefront.queues;
     const std::uint32_t blocks = compact_blocks(in_work.count);
-    wavefront.kernels.sum_children.launch({1, in_work.generation, blocks}, q.block_counts,
+    wavefront.kernels.sum_children.launch({1, in_work.generation, blocks, blocks}, q.block_counts,
                                           q.block_shadow_rays, q.totals, blocks);
 }
 

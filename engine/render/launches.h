@@ -2,16 +2,23 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "engine/device/program.h"
 #include "engine/render/device_scene.h"
 #include "engine/render/ray_queues.h"
+#include "engine/render/visit_counter.h"
 #include "kernels/device_types.h"
 
 namespace sahl {
 
-/// Of which WavefrontKernels are made: with the device's way of traversal.
-Program build_wavefront_program(Device& device);
+/// The files of kernels/ that WavefrontKernels are in: with the device's way of traversal.
+std::vector<std::string> wavefront_sources(const Device& device);
+
+/// Of which WavefrontKernels are made. `counting`: those that count visits (engine/render/visits.h) and
+/// have to be launched with a VisitCounter.
+Program build_wavefront_program(Device& device, bool counting = false);
 
 /// The kernels of kernels/*.cl. What no launch asks for is never compiled.
 struct WavefrontKernels {
@@ -27,6 +34,7 @@ struct Wavefront {
     WavefrontKernels& kernels;
     const DeviceScene& scene;
     RayQueues& queues;
+    VisitCounter* visits = nullptr;  ///< of counting kernels
 };
 
 /// A batch that waits to be traced or is in work.

@@ -1,9 +1,11 @@
 #include "engine/render/renderer.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/core/host_steps.h"
 #include "engine/render/camera_constants.h"
 #include "engine/render/trace_aovs.h"
 #include "engine/render/wavefront.h"
@@ -75,12 +77,33 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
     const device::CameraConstants camera =
         camera_constants(impl_->cameras[settings.camera], settings.resolution);
     const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
-    RayQueues queues(impl_->device, impl_->batch_size(settings, samples), settings.depth,
-                     impl_->device_scene.constants.light_count);
-    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
+    std::optional<RayQueues> queues;
+    {
+        const HostStep step("allocate");
+        queues.emplace(impl_->device, impl_->batch_size(settings, samples), settings.depth,
+                       impl_->device_scene.constants.light_count);
+    }
+    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, *queues};
     RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress, stop);
+    const HostStep step("release");
+    queues.reset();
     impl_->program.store_binary();  // now that each kernel has been compiled
     return statistics;
+}
+
+std::vector<GenerationVisits> Renderer::count_visits(const RenderSettings& settings) {
+    const Crop crop = crop_of(settings);
+    const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
+    Program program = build_wavefront_program(impl_->device, true);
+    WavefrontKernels kernels(impl_->device, program);
+    Film film(impl_->device.memory(), crop.x1 - crop.x0, crop.y1 - crop.y0);
+    RayQueues queues(impl_->device, impl_->batch_size(settings, samples), settings.depth,
+                     impl_->device_scene.constants.light_count);
+    VisitCounter visits(impl_->device, queues.capacity, settings.depth);
+    Wavefront wavefront{impl_->device, kernels, impl_->device_scene, queues, &visits};
+    trace_waves(wavefront, camera_constants(impl_->cameras[settings.camera], settings.resolution), settings,
+                crop, film, {}, {});
+    return visits.generations;
 }
 
 std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std::span<const Aov> aovs) {

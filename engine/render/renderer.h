@@ -14,6 +14,7 @@
 #include "engine/film/film.h"
 #include "engine/render/memory_plan.h"
 #include "engine/render/render_settings.h"
+#include "engine/render/visits.h"
 #include "engine/scene/scene.h"
 
 namespace sahl {
@@ -53,6 +54,9 @@ public:
     /// are in the film as in the whole image, of the others nothing is: in a new film they are black.
     RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {},
                             const std::stop_token& stop = {});
+
+    /// What the rays of the image of `settings` visit, by generation. Compiles kernels that count.
+    std::vector<GenerationVisits> count_visits(const RenderSettings& settings);
 
     /// What `aovs` ask for, of the camera, the crop and the samples of `settings`.
     std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs);

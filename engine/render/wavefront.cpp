@@ -1,10 +1,13 @@
 #include "engine/render/wavefront.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "engine/core/host_steps.h"
 
 namespace sahl {
 namespace {
@@ -26,24 +29,48 @@ void add_to_film(std::optional<PendingContributions>& pending, std::uint32_t cap
     if (!pending) {
         return;
     }
-    pending->light.wait();
-    pending->pixels.wait();
+    {
+        const HostStep step("wait");
+        pending->light.wait();
+        pending->pixels.wait();
+    }
+    const HostStep step("accumulate");
     const float* light = pending->light.data();
     film.add({pending->pixels.data(), pending->count}, light, light + capacity,
              light + 2 * std::size_t{capacity});
     pending.reset();
 }
 
-/// One generation of a batch. `next` may be the batch itself: children are staged. Both `next` and
+/// What the host takes of a generation once its kernels have run.
+struct GenerationResults {
+    PendingContributions contributions;
+    Mapping<std::uint32_t> totals;  ///< see sum_children
+};
+
+/// Queues one generation of a batch. `next` may be the batch itself: children are staged. Both `next` and
 /// `waiting` are written only where `spawn`.
-void trace_generation(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn, Contributions& out,
-                      RayBatch& next, RayBatch& waiting) {
+GenerationResults trace_generation(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
+                                   Contributions& out, RayBatch& next, RayBatch& waiting) {
+    const HostStep step("launch");
     launch_intersect(wavefront, in_work);
     launch_shade(wavefront, in_work, spawn, out);
     launch_shadow(wavefront, in_work, out);
     launch_count_children(wavefront, in_work);
     launch_sum_children(wavefront, in_work);
     if (spawn) launch_compact(wavefront, in_work, next, waiting);
+    const std::size_t channels = 3 * std::size_t{wavefront.queues.capacity};
+    GenerationResults results{
+        {out.light.enqueue_map<float>(MapMode::read, channels),
+         out.pixels.enqueue_map<std::uint32_t>(MapMode::read, in_work.count), in_work.count},
+        wavefront.queues.totals.enqueue_map<std::uint32_t>(MapMode::read, 3)};
+    wavefront.device.flush();
+    return results;
+}
+
+std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t>& totals) {
+    const HostStep step("wait");
+    totals.wait();
+    return {totals[0], totals[1], totals[2]};
 }
 
 /// Takes the pixels of a wave whose ray trees are not finished out of the film. Which those are only
@@ -97,7 +124,10 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
         wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(queues.capacity, samples - done));
         stack.push_back({free_slots.back(), wave.count, 0});
         free_slots.pop_back();
-        launch_generate(wavefront, camera, wave, queues.batches[stack.back().slot]);
+        {
+            const HostStep step("launch");
+            launch_generate(wavefront, camera, wave, queues.batches[stack.back().slot]);
+        }
 
         while (!stack.empty()) {
             if (stop.stop_requested()) {
@@ -113,19 +143,14 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
             Contributions& out = queues.contributions[side];
             RayBatch& next = queues.batches[batch.slot];
             RayBatch& waiting = queues.batches[spawn ? free_slots.back() : batch.slot];
-            trace_generation(wavefront, batch, spawn, out, next, waiting);
-            PendingContributions produced{
-                out.light.enqueue_map<float>(MapMode::read, 3 * std::size_t{queues.capacity}),
-                out.pixels.enqueue_map<std::uint32_t>(MapMode::read, batch.count), batch.count};
-            auto totals = queues.totals.enqueue_map<std::uint32_t>(MapMode::read, 3);
-            wavefront.device.flush();
+            GenerationResults results = trace_generation(wavefront, batch, spawn, out, next, waiting);
 
             // The host adds the last generation to the film while the device works on this one.
             add_to_film(pending, queues.capacity, film);
-            pending.emplace(std::move(produced));
+            pending.emplace(std::move(results.contributions));
             side = 1 - side;
 
-            totals.wait();
+            const std::array<std::uint32_t, 3> totals = wait_for(results.totals);
             GenerationCounts& counts = statistics.generations[batch.generation];
             counts.rays += batch.count;
             counts.shadow_rays += totals[1] | std::uint64_t{totals[2]} << 32U;

@@ -1,6 +1,7 @@
 #include "engine/scene/load.h"
 
 #include "engine/core/error.h"
+#include "engine/core/host_steps.h"
 #include "engine/scene/scene_cse167.h"
 #include "engine/scene/scene_format.h"
 #include "engine/scene/scene_json.h"
@@ -10,6 +11,7 @@
 namespace sahl {
 
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options) {
+    const HostStep step("load scene");
     const std::optional<SceneFormat> format = scene_format(path);
     if (!format) throw Error(ExitCode::usage, path.string() + ": " + unknown_scene_format(path));
     if (*format == SceneFormat::json) return read_scene_json(path, read_scene_file(path), options);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/host_steps.h"
 #include "engine/core/log.h"
 #include "engine/self_test/every_feature.h"
 #include "engine/self_test/first_use.h"
@@ -152,6 +153,7 @@ SelfTestReport run_self_test(Device& device) {
 
 void test_before_first_use(Device& device, Program& program, WavefrontKernels& kernels) {
     if (program.passed_self_test()) return;
+    const HostStep step("self-test");
     const auto start = std::chrono::steady_clock::now();
     Bench bench(device, kernels);
     conclude(device, program, test_wavefront(bench, test_waves()), start);

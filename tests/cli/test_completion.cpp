@@ -123,7 +123,7 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         CHECK(room.complete(item.typed) == item.replies);
     }
     CHECK(room.complete({"sahl", ""}) ==
-          Words{"compare", "completion", "convert", "devices", "info", "man", "profile", "render"});
+          Words{"compare", "completion", "convert", "devices", "info", "man", "profile", "render", "warm"});
 }
 
 TEST_CASE("completion: bash offers exactly the options of --help", "[cli]") {

@@ -13,14 +13,10 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
 
 #include "engine/core/error.h"
 #include "engine/scene/load.h"
+#include "tests/support/json_schema.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sahl::tests {
@@ -43,33 +39,6 @@ void write_text(const fs::path& path, const std::string& text) {
 }
 
 ordered_json parse(const std::string& text) { return ordered_json::parse(text, nullptr, true, true); }
-
-class SceneSchema {
-public:
-    SceneSchema() {
-        const nlohmann::json document =
-            nlohmann::json::parse(read_text(source("docs/sahl-scene.schema.json")));
-        valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-            .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema_);
-    }
-
-    /// Why the document is refused; empty: it is valid.
-    std::string refusal(const nlohmann::json& document) const {
-        valijson::Validator validator;
-        valijson::ValidationResults results;
-        if (validator.validate(schema_, valijson::adapters::NlohmannJsonAdapter(document), &results))
-            return "";
-        std::string text;
-        for (valijson::ValidationResults::Error error; results.popError(error);) {
-            for (const std::string& context : error.context) text += context;
-            text += ": " + error.description + "\n";
-        }
-        return text.empty() ? "refused" : text;
-    }
-
-private:
-    valijson::Schema schema_{};
-};
 
 /// Documents with the name of where they come from.
 using Documents = std::vector<std::pair<std::string, std::string>>;
@@ -214,7 +183,7 @@ void find_keys(const nlohmann::json& schema, std::map<std::string, bool>& keys) 
 }  // namespace
 
 TEST_CASE("Documented scenes and our own are valid by the schema and load", "[scene][schema]") {
-    const SceneSchema schema;
+    const JsonSchema schema("sahl-scene.schema.json");
     const Documents examples = scenes_in(source("docs/examples"));
     REQUIRE(examples.size() >= 20);
     for (const Documents& documents : {examples, scenes_in(source("scenes"))}) {
@@ -235,7 +204,7 @@ TEST_CASE("Documented scenes and our own are valid by the schema and load", "[sc
 }
 
 TEST_CASE("What the schema refuses the loader refuses, too, and says where", "[scene][schema]") {
-    const SceneSchema schema;
+    const JsonSchema schema("sahl-scene.schema.json");
     const TemporaryFolder folder;
     for (const auto& entry : fs::directory_iterator(source("docs/examples")))
         fs::copy(entry.path(), folder / entry.path().filename().string());

@@ -1,0 +1,24 @@
+// What `sahl profile` is asked to do.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/render_options.h"
+
+namespace sahl::cli {
+
+struct ProfileOptions {
+    RenderOptions render;       ///< of it the scene, the image, the tree and the limit of memory
+    std::optional<int> repeat;  ///< nothing: until the median is sure
+    int warm_up = 1;
+    bool assert_no_jit = false;
+    std::optional<std::string> json;  ///< files to write
+    std::optional<std::string> csv;
+    std::optional<std::string> trace;
+};
+
+/// `options` has to outlive `command`.
+void add_profile_options(CLI::App& command, ProfileOptions& options);
+
+}  // namespace sahl::cli

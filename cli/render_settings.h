@@ -1,0 +1,14 @@
+// What of a scene is to be rendered, by the command line's options.
+#pragma once
+
+#include "cli/render_options.h"
+
+namespace sahl::cli {
+
+/// All but the depth. Throws Error(usage) for what the scene or the image does not have.
+RenderSettings settings_of(const RenderOptions& options, const Scene& scene);
+
+/// The crop's, if there is one.
+Resolution image_size(const RenderSettings& settings);
+
+}  // namespace sahl::cli

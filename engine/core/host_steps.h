@@ -1,0 +1,53 @@
+// What the host does and when: named steps, nested, recorded for a profile.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace sahl {
+
+/// Nanoseconds of CLOCK_MONOTONIC_RAW, which no time server bends; PoCL's events have the same.
+std::uint64_t monotonic_ns();
+
+/// A step begins, or the last one that began ends.
+struct HostEvent {
+    std::uint64_t ns = 0;
+    const char* begins = nullptr;  ///< the step's name; nullptr: an end
+};
+
+/// While it lives, the steps of the thread that made it are recorded. One at a time on a thread.
+class HostStepLog {
+public:
+    HostStepLog() { current_ = this; }
+    ~HostStepLog() { current_ = nullptr; }
+    HostStepLog(const HostStepLog&) = delete;
+    HostStepLog& operator=(const HostStepLog&) = delete;
+
+    /// What was recorded since the last call, in time's order. A step may be open: it ends in the next.
+    std::vector<HostEvent> take();
+
+private:
+    friend class HostStep;
+    constinit static thread_local inline HostStepLog* current_ = nullptr;
+
+    std::vector<HostEvent> events_;
+};
+
+/// A step from here to the end of the scope. Costs a look at a pointer where nothing is recorded.
+class HostStep {
+public:
+    /// `name` outlives the log: a literal.
+    explicit HostStep(const char* name) : log_(HostStepLog::current_) {
+        if (log_ != nullptr) log_->events_.push_back({monotonic_ns(), name});
+    }
+    ~HostStep() {
+        if (log_ != nullptr) log_->events_.push_back({monotonic_ns(), nullptr});
+    }
+    HostStep(const HostStep&) = delete;
+    HostStep& operator=(const HostStep&) = delete;
+
+private:
+    HostStepLog* log_;
+};
+
+}  // namespace sahl

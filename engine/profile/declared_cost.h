@@ -1,0 +1,29 @@
+// What a kernel's work costs in memory and arithmetic, as declared by who wrote it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "engine/render/visits.h"
+
+namespace sahl {
+
+/// All rays of a generation.
+struct GenerationWork {
+    std::uint64_t rays = 0;
+    std::uint64_t shadow_rays = 0;
+    std::uint64_t children = 0;
+    std::uint32_t lights = 0;  ///< of the scene
+    GenerationVisits visits;
+};
+
+struct DeclaredCost {
+    std::uint64_t bytes = 0;              ///< loaded and stored, as if there were no cache
+    std::optional<std::uint64_t> flop{};  ///< nothing: not declared
+};
+
+/// Of `kernel` ("intersect", without the way of traversal) over the rays of one generation.
+DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work);
+
+}  // namespace sahl

@@ -1,0 +1,61 @@
+#include "engine/profile/frame_recorder.h"
+
+#include <utility>
+
+namespace sahl {
+namespace {
+
+std::uint64_t on_host(std::uint64_t device_ns, const ClockOffset& clock) {
+    return device_ns + static_cast<std::uint64_t>(clock.offset_ns);
+}
+
+}  // namespace
+
+void TimelineRecorder::add(Device& device) {
+    device.launches().take();
+    device.launches().enable(true);
+}
+
+TimelineRecord TimelineRecorder::stop(Device& device, const ClockOffset& clock) {
+    device.finish();
+    TimelineRecord record{begin_ns_, monotonic_ns(), device.launches().take(), steps_.take()};
+    device.launches().enable(false);
+    for (LaunchRecord& launch : record.launches) {
+        for (std::uint64_t* time :
+             {&launch.queued_ns, &launch.submitted_ns, &launch.started_ns, &launch.ended_ns}) {
+            *time = on_host(*time, clock);
+        }
+    }
+    return record;
+}
+
+RenderStatistics run_frame(Device& device, Renderer& renderer, const FrameJob& job) {
+    const RenderSettings& settings = job.settings;
+    const Resolution size = settings.crop ? Resolution{settings.crop->x1 - settings.crop->x0,
+                                                       settings.crop->y1 - settings.crop->y0}
+                                          : settings.resolution;
+    std::optional<Film> film;
+    {
+        const HostStep step("allocate");
+        film.emplace(device.memory(), size.width, size.height);
+    }
+    RenderStatistics statistics = renderer.render(settings, *film);
+    Image image = film->resolve(settings.samples ? settings.samples->count() : settings.spp);
+    write_image(job.output, image, job.encoding);
+    const HostStep step("release");
+    film.reset();
+    image = {};
+    return statistics;
+}
+
+RecordedFrame record_frame(Device& device, Renderer& renderer, const FrameJob& job) {
+    RecordedFrame frame;
+    frame.clock = measure_clock(device);
+    TimelineRecorder recorder;
+    recorder.add(device);
+    frame.statistics = run_frame(device, renderer, job);
+    frame.timeline = recorder.stop(device, frame.clock);
+    return frame;
+}
+
+}  // namespace sahl
