@@ -18,8 +18,8 @@ struct HostEvent {
 /// While it lives, the steps of the thread that made it are recorded. One at a time on a thread.
 class HostStepLog {
 public:
-    HostStepLog() { current_ = this; }
-    ~HostStepLog() { current_ = nullptr; }
+    HostStepLog() { current = this; }
+    ~HostStepLog() { current = nullptr; }
     HostStepLog(const HostStepLog&) = delete;
     HostStepLog& operator=(const HostStepLog&) = delete;
 
@@ -28,7 +28,7 @@ public:
 
 private:
     friend class HostStep;
-    constinit static thread_local inline HostStepLog* current_ = nullptr;
+    constinit static thread_local inline HostStepLog* current = nullptr;
 
     std::vector<HostEvent> events_;
 };
@@ -37,7 +37,7 @@ private:
 class HostStep {
 public:
     /// `name` outlives the log: a literal.
-    explicit HostStep(const char* name) : log_(HostStepLog::current_) {
+    explicit HostStep(const char* name) : log_(HostStepLog::current) {
         if (log_ != nullptr) log_->events_.push_back({monotonic_ns(), name});
     }
     ~HostStep() {

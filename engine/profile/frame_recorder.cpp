@@ -17,7 +17,10 @@ void TimelineRecorder::add(Device& device) {
 }
 
 TimelineRecord TimelineRecorder::stop(Device& device, const ClockOffset& clock) {
-    device.finish();
+    {
+        const HostStep step("wait");
+        device.finish();
+    }
     TimelineRecord record{begin_ns_, monotonic_ns(), device.launches().take(), steps_.take()};
     device.launches().enable(false);
     for (LaunchRecord& launch : record.launches) {

@@ -67,7 +67,7 @@ GenerationResults trace_generation(Wavefront& wavefront, const WaitingBatch& in_
     return results;
 }
 
-std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t>& totals) {
+std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t> totals) {
     const HostStep step("wait");
     totals.wait();
     return {totals[0], totals[1], totals[2]};
@@ -150,7 +150,7 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
             pending.emplace(std::move(results.contributions));
             side = 1 - side;
 
-            const std::array<std::uint32_t, 3> totals = wait_for(results.totals);
+            const std::array<std::uint32_t, 3> totals = wait_for(std::move(results.totals));
             GenerationCounts& counts = statistics.generations[batch.generation];
             counts.rays += batch.count;
             counts.shadow_rays += totals[1] | std::uint64_t{totals[2]} << 32U;
