@@ -15,7 +15,7 @@ SAHL = BUILD / "sahl"
 
 
 class Run:
-    """A finished process: its output, its wall-clock and its processor time (both in seconds)."""
+    """A finished process: its output, its wall-clock and its processor time (both in seconds), the most memory it had."""
 
     def __init__(self, command, environment=None):
         outputs = []
@@ -31,6 +31,7 @@ class Run:
         process.stdout.close()
         self.seconds = (self.ended_ns - self.started_ns) * 1e-9
         self.processor_seconds = usage.ru_utime + usage.ru_stime
+        self.peak_bytes = usage.ru_maxrss * 1024
         self.output = "".join(outputs)
         if process.returncode != 0:
             fail(f"{' '.join(str(part) for part in command)}: status {process.returncode}\n{self.output}")
