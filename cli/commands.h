@@ -19,6 +19,7 @@ Command add_profile_command(CLI::App& app, CommonOptions& common);
 /// To `add_profile_command`'s.
 Command add_profile_diff_command(CLI::App& profile, CommonOptions& common);
 Command add_warm_command(CLI::App& app, CommonOptions& common);
+Command add_explain_command(CLI::App& app, CommonOptions& common);
 Command add_compare_command(CLI::App& app, CommonOptions& common);
 Command add_convert_command(CLI::App& app, CommonOptions& common);
 Command add_info_command(CLI::App& app, CommonOptions& common);

@@ -131,6 +131,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     const std::vector<Command> commands{add_profile_diff_command(*profile.app, common),
                                         profile,
                                         add_render_command(app, common),
+                                        add_explain_command(app, common),
                                         add_compare_command(app, common),
                                         add_info_command(app, common),
                                         add_convert_command(app, common),

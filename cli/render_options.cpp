@@ -78,7 +78,7 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
 
 }  // namespace
 
-void add_image_options(CLI::App& command, RenderOptions& options) {
+void add_view_options(CLI::App& command, RenderOptions& options) {
     add_value(
         command, "--camera", "NAME", [&options](const std::string& text) { options.camera = text; },
         "one of the scene's cameras (default: its first)");
@@ -107,6 +107,10 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
                 read_whole<std::uint64_t>("--seed", text, 0, std::numeric_limits<std::uint64_t>::max());
         },
         "of the random numbers (default: 0)");
+}
+
+void add_image_options(CLI::App& command, RenderOptions& options) {
+    add_view_options(command, options);
     add_value(
         command, "--crop", "X0,Y0,X1,Y1",
         [&options](const std::string& text) { options.crop = read_crop("--crop", text); },

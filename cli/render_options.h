@@ -28,7 +28,10 @@ struct RenderOptions {
     bool dry_run = false;
 };
 
-/// Camera, size, depth, samples, seed and crop. `options` has to outlive `command`, here and below.
+/// Camera, size, depth, samples and seed. `options` has to outlive `command`, here and below.
+void add_view_options(CLI::App& command, RenderOptions& options);
+
+/// The same and the crop.
 void add_image_options(CLI::App& command, RenderOptions& options);
 
 /// How the tree is built and walked through.

@@ -109,6 +109,10 @@ void Film::clear(std::span<const std::uint32_t> pixels) {
     }
 }
 
+std::array<std::int64_t, 3> Film::sum(std::size_t pixel) const {
+    return {sums_[3 * pixel], sums_[3 * pixel + 1], sums_[3 * pixel + 2]};
+}
+
 Image Film::resolve(int samples) const {
     const HostStep step("resolve");
     Image image{

@@ -2,6 +2,7 @@
 // point, so they do not depend on the order of addition.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -46,6 +47,9 @@ public:
 
     /// Makes these pixels black again, whatever was added to them. The counts stay.
     void clear(std::span<const std::uint32_t> pixels);
+
+    /// The sums of a pixel (row-major index), in units of 2^-32.
+    std::array<std::int64_t, 3> sum(std::size_t pixel) const;
 
     /// The sums divided by `samples` (a pixel).
     Image resolve(int samples) const;

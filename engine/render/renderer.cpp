@@ -7,12 +7,15 @@
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
 #include "engine/render/camera_constants.h"
+#include "engine/render/explain.h"
 #include "engine/render/trace_aovs.h"
 #include "engine/render/wavefront.h"
 #include "engine/self_test/first_use.h"
 
 namespace sahl {
 namespace {
+
+constexpr std::uint64_t least_explained_batch = 1024;  // rays
 
 /// The pixels that `settings` ask for.
 Crop crop_of(const RenderSettings& settings) {
@@ -117,6 +120,20 @@ std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std:
     Kernel describe = program.kernel("describe");
     test_before_first_use(impl_->device, program, describe, impl_->kernels);
     return trace_aovs(wavefront, describe, camera, settings, crop, aovs);
+}
+
+Explanation Renderer::explain(const RenderSettings& settings, int x, int y) {
+    RenderSettings one = settings;
+    one.crop = Crop{x, y, x + 1, y + 1};
+    const Crop pixel = crop_of(one);
+    const device::CameraConstants camera =
+        camera_constants(impl_->cameras[settings.camera], settings.resolution);
+    const auto samples = static_cast<std::uint64_t>(samples_of(settings).count());
+    // Room for the trees' growth: a batch of its own for each few rays would be slow.
+    RayQueues queues(impl_->device, impl_->batch_size(settings, std::max(samples, least_explained_batch)),
+                     settings.depth, impl_->device_scene.constants.light_count);
+    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
+    return explain_pixel(wavefront, camera, settings, pixel);
 }
 
 }  // namespace sahl

@@ -12,6 +12,7 @@
 #include "engine/device/device.h"
 #include "engine/film/aov.h"
 #include "engine/film/film.h"
+#include "engine/render/explanation.h"
 #include "engine/render/memory_plan.h"
 #include "engine/render/render_settings.h"
 #include "engine/render/visits.h"
@@ -60,6 +61,10 @@ public:
 
     /// What `aovs` ask for, of the camera, the crop and the samples of `settings`.
     std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs);
+
+    /// Where the light of pixel (x, y) of the image of `settings` comes from, ray by ray: the same rays, bit
+    /// for bit, that render() adds up there. Its crop does not count.
+    Explanation explain(const RenderSettings& settings, int x, int y);
 
 private:
     struct Impl;
