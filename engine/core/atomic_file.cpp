@@ -140,10 +140,12 @@ void write_all(int file, std::span<const std::byte> bytes, const fs::path& path)
     }
 }
 
-void write_special(const fs::path& path, std::span<const std::byte> bytes) {
+using Pieces = std::span<const std::span<const std::byte>>;
+
+void write_special(const fs::path& path, Pieces pieces) {
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
     if (file.get() < 0) fail(path, errno);
-    write_all(file.get(), bytes, path);
+    for (const auto& bytes : pieces) write_all(file.get(), bytes, path);
     if (const int cause = file.close(); cause != 0) fail(path, cause);
 }
 
@@ -200,8 +202,12 @@ void check_output_file(const fs::path& path) try {
     fail(path, error.code().value());
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t mode) try {
-    if (is_special_file(path)) return write_special(path, bytes);
+void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t mode) {
+    write_file(path, Pieces(&bytes, 1), mode);
+}
+
+void write_file(const fs::path& path, Pieces pieces, mode_t mode) try {
+    if (is_special_file(path)) return write_special(path, pieces);
     const fs::path target = follow_links(path);
     if (fs::is_directory(fs::status(target)) || !target.has_filename()) fail(path, EISDIR);
     const fs::path folder = folder_of(target);
@@ -211,7 +217,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t m
     const std::string name = "." + target.filename().string().substr(0, 200) + std::string(part_mark);
     remove_stale_files(folder, name);
     Temporary temporary((folder / name).string(), mode, path);
-    write_all(temporary.get(), bytes, path);
+    for (const auto& bytes : pieces) write_all(temporary.get(), bytes, path);
     struct stat old {};
     if (::stat(target.c_str(), &old) == 0) ::fchmod(temporary.get(), old.st_mode & 0777);
     if (::fsync(temporary.get()) != 0) fail(path, errno);

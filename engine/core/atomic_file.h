@@ -26,6 +26,10 @@ bool is_special_file(const std::filesystem::path& path);
 /// pipe without a reader ignores SIGXFSZ and SIGPIPE.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes, mode_t mode = 0666);
 
+/// The same with several pieces, one behind the other.
+void write_file(const std::filesystem::path& path, std::span<const std::span<const std::byte>> pieces,
+                mode_t mode = 0666);
+
 /// Removes `temporary` if it is a temporary file of write_file whose writer is dead.
 void remove_if_stale(const std::filesystem::path& temporary);
 

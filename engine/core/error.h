@@ -16,6 +16,8 @@ enum class ExitCode : int {
     device = 4,
     memory = 5,
     output = 6,
+    resume_mismatch = 7,
+    jobs_failed = 8,
     performance = 9,
     internal = 70,
 };

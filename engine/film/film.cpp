@@ -102,6 +102,12 @@ void Film::merge(const Film& other) {
     clamped_ += other.clamped_;
 }
 
+std::span<std::int64_t> Film::restore(std::uint64_t non_finite, std::uint64_t clamped) {
+    non_finite_ = non_finite;
+    clamped_ = clamped;
+    return sums_;
+}
+
 void Film::clear(std::span<const std::uint32_t> pixels) {
     for (const std::uint32_t pixel : pixels) {
         const auto sums = sums_.subspan(3 * std::size_t{pixel}, 3);

@@ -45,6 +45,11 @@ public:
     /// of the whole. Throws Error(usage) for another size.
     void merge(const Film& other);
 
+    /// The sums, 3 a pixel, row-major: what a checkpoint keeps.
+    std::span<const std::int64_t> sums() const { return sums_; }
+    /// The same to be filled in, and the counts that go with them.
+    std::span<std::int64_t> restore(std::uint64_t non_finite, std::uint64_t clamped);
+
     /// Makes these pixels black again, whatever was added to them. The counts stay.
     void clear(std::span<const std::uint32_t> pixels);
 

@@ -22,11 +22,16 @@ std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings
     return encoder_bytes(encoding_of(path, settings), width, height, aovs);
 }
 
+std::vector<unsigned char> encode_image(const fs::path& path, const Image& image,
+                                        const OutputSettings& settings, std::span<const AovImage> aovs) {
+    return encode(path, image, aovs, encoding_of(path, settings), settings);
+}
+
 void write_image(const fs::path& path, const Image& image, const OutputSettings& settings,
                  std::span<const AovImage> aovs) {
     const std::vector<unsigned char> file = [&] {
         const HostStep step("encode");
-        return encode(path, image, aovs, encoding_of(path, settings), settings);
+        return encode_image(path, image, settings, aovs);
     }();
     const HostStep step("write");
     write_file(path, std::as_bytes(std::span(file)));

@@ -60,6 +60,10 @@ void check_output(const std::filesystem::path& path, const OutputSettings& setti
 std::uint64_t encoder_bytes(const std::filesystem::path& path, const OutputSettings& settings, int width,
                             int height, std::span<const Aov> aovs);
 
+/// The bytes of the file that write_image would write to `path`. Throws as it does, but for writing.
+std::vector<unsigned char> encode_image(const std::filesystem::path& path, const Image& image,
+                                        const OutputSettings& settings, std::span<const AovImage> aovs = {});
+
 /// Writes `image` (3 channels) in the format of the extension, encoded in memory first, then as
 /// write_file does. A special file without an extension, such as /dev/null, gets a PNG.
 /// NaN is stored as 0; values beyond what half or float hold as the largest finite value.

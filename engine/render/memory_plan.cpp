@@ -31,6 +31,7 @@ MemoryPlan plan_for(const SceneMemory& scene, const MemoryRequest& request, std:
     plan.image = request.pixels * 3 * sizeof(float);
     plan.aovs = request.aovs;
     plan.encoder = request.encoder;
+    plan.writes_behind = request.writes_behind;
     return plan;
 }
 
@@ -52,11 +53,13 @@ MemoryRequest memory_request(const Device& device, const RenderSettings& setting
 }
 
 std::uint64_t MemoryPlan::total() const {
-    const std::uint64_t tracing = std::max(ray_queues, image + encoder);
-    return std::max(
-        {scene.loaded + scene.building,             // making the scene ready
-         scene.device() + aovs + aov_queues,        // tracing AOVs
-         scene.device() + aovs + film + tracing});  // tracing, writing files    // tracing, writing files
+    const std::uint64_t writing = image + encoder;
+    // Of the image that is written while others are traced, or made ready.
+    const std::uint64_t behind = writes_behind ? aovs + writing : 0;
+    const std::uint64_t tracing = std::max(ray_queues, writing);
+    return behind + std::max({scene.loaded + scene.building,             // making the scene ready
+                              scene.device() + aovs + aov_queues,        // tracing AOVs
+                              scene.device() + aovs + film + tracing});  // tracing, writing files
 }
 
 MemoryPlan plan_memory(const SceneMemory& scene, const MemoryRequest& request, std::uint64_t limit) {

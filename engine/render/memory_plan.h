@@ -20,6 +20,7 @@ struct MemoryRequest {
     std::uint32_t ray_budget = 0;  ///< the most rays of a batch
     std::uint64_t aovs = 0;        ///< bytes of the AOV images
     std::uint64_t encoder = 0;     ///< bytes of encoding the largest file, see encoder_bytes()
+    bool writes_behind = false;    ///< an image is written while the next one is traced
 };
 
 /// What `settings` ask of `device` for a scene of `light_count` lights, without AOVs and files.
@@ -35,6 +36,7 @@ struct MemoryPlan {
     std::uint64_t image = 0;  ///< the resolved film
     std::uint64_t encoder = 0;
     std::uint32_t ray_budget = 0;
+    bool writes_behind = false;
 
     /// The most that is held at one time.
     std::uint64_t total() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
@@ -60,6 +61,7 @@ struct Renderer::Impl {
     Program program;
     WavefrontKernels kernels;
     DeviceScene device_scene;
+    std::optional<Program> aov_program{};
 };
 
 Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
@@ -67,12 +69,26 @@ Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job,
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 
+void Renderer::set_scene(const Scene& scene, const MemoryRequest& job, BuildQuality quality) {
+    impl_->device_scene = {};  // first: there may be no room for two
+    impl_->device_scene = make_device_scene(impl_->device, scene, job, quality);
+    impl_->cameras = scene.cameras;
+}
+
+void Renderer::set_cameras(std::vector<Camera> cameras) { impl_->cameras = std::move(cameras); }
+
+void Renderer::set_job(const MemoryRequest& job) {
+    MemoryPlan& plan = impl_->device_scene.plan;
+    plan = plan_memory(plan.scene, job, impl_->device.memory().limit());
+}
+
 const BvhStatistics& Renderer::bvh_statistics() const { return impl_->device_scene.bvh_statistics; }
 
 const MemoryPlan& Renderer::memory_plan() const { return impl_->device_scene.plan; }
 
 RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
-                                  const ProgressCallback& progress, const std::stop_token& stop) {
+                                  const ProgressCallback& progress, const std::stop_token& stop,
+                                  const Checkpoints& checkpoints) {
     const Crop crop = crop_of(settings);
     if (film.width() != crop.x1 - crop.x0 || film.height() != crop.y1 - crop.y0) {
         throw Error(ExitCode::usage, "the film must have the crop's size");
@@ -87,7 +103,8 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
                        impl_->device_scene.constants.light_count);
     }
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, *queues};
-    RenderStatistics statistics = trace_waves(wavefront, camera, settings, crop, film, progress, stop);
+    RenderStatistics statistics =
+        trace_waves(wavefront, camera, settings, crop, film, progress, stop, checkpoints);
     const HostStep step("release");
     queues.reset();
     impl_->program.store_binary();  // now that each kernel has been compiled
@@ -105,7 +122,7 @@ std::vector<GenerationVisits> Renderer::count_visits(const RenderSettings& setti
     VisitCounter visits(impl_->device, queues.capacity, settings.depth);
     Wavefront wavefront{impl_->device, kernels, impl_->device_scene, queues, &visits};
     trace_waves(wavefront, camera_constants(impl_->cameras[settings.camera], settings.resolution), settings,
-                crop, film, {}, {});
+                crop, film, {}, {}, {});
     return visits.generations;
 }
 
@@ -116,10 +133,13 @@ std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std:
     const std::uint64_t pixels = pixel_count(crop);
     RayQueues queues(impl_->device, impl_->batch_size(settings, pixels), 0, 0);
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    Program program = build_aov_program(impl_->device);
+    if (!impl_->aov_program) impl_->aov_program.emplace(build_aov_program(impl_->device));
+    Program& program = *impl_->aov_program;
     Kernel describe = program.kernel("describe");
     test_before_first_use(impl_->device, program, describe, impl_->kernels);
-    return trace_aovs(wavefront, describe, camera, settings, crop, aovs);
+    std::vector<AovImage> images = trace_aovs(wavefront, describe, camera, settings, crop, aovs);
+    program.store_binary();
+    return images;
 }
 
 Explanation Renderer::explain(const RenderSettings& settings, int x, int y) {

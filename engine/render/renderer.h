@@ -35,6 +35,15 @@ struct RenderStatistics {
 /// Called with the camera samples finished so far and their whole number, after each wave.
 using ProgressCallback = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
+/// For renders that go on where an earlier one was ended.
+struct Checkpoints {
+    std::uint64_t first_sample = 0;  ///< camera samples that the film has already, see `save`
+    std::function<bool()> due{};     ///< asked between waves; none: never
+    /// Called when it is due, with the number of camera samples that are in the film: with it as
+    /// `first_sample` and the film as it is now, the rest makes the same image bit for bit.
+    std::function<void(std::uint64_t samples)> save{};
+};
+
 /// A scene made ready for a device: lowered, its BVH built, uploaded, kernels compiled.
 class Renderer {
 public:
@@ -46,6 +55,15 @@ public:
     ~Renderer();
     Renderer(Renderer&&) noexcept;
 
+    /// Takes another scene in the place of this one; kernels stay as they are. Errors as of the constructor:
+    /// then there is no scene, and a call of this has to follow.
+    void set_scene(const Scene& scene, const MemoryRequest& job = {},
+                   BuildQuality quality = BuildQuality::high);
+    /// Takes other cameras; nothing is built again.
+    void set_cameras(std::vector<Camera> cameras);
+    /// Plans the memory of another job with the scene that there is. Throws Error(memory) as plan_memory.
+    void set_job(const MemoryRequest& job);
+
     const BvhStatistics& bvh_statistics() const;
     /// Of the scene and the job.
     const MemoryPlan& memory_plan() const;
@@ -54,7 +72,7 @@ public:
     /// A requested `stop` is heard within a generation of one batch. The pixels that are finished by then
     /// are in the film as in the whole image, of the others nothing is: in a new film they are black.
     RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {},
-                            const std::stop_token& stop = {});
+                            const std::stop_token& stop = {}, const Checkpoints& checkpoints = {});
 
     /// What the rays of the image of `settings` visit, by generation. Compiles kernels that count.
     std::vector<GenerationVisits> count_visits(const RenderSettings& settings);

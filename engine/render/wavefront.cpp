@@ -101,7 +101,8 @@ device::WaveConstants wave_constants(const RenderSettings& settings, const Crop&
 
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
                              const RenderSettings& settings, const Crop& crop, Film& film,
-                             const ProgressCallback& progress, const std::stop_token& stop) {
+                             const ProgressCallback& progress, const std::stop_token& stop,
+                             const Checkpoints& checkpoints) {
     const auto start = Clock::now();
     RayQueues& queues = wavefront.queues;
     device::WaveConstants wave = wave_constants(settings, crop);
@@ -118,7 +119,7 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
     }
     int side = 0;
 
-    for (std::uint64_t done = 0; done < samples; done += wave.count) {
+    for (std::uint64_t done = checkpoints.first_sample; done < samples; done += wave.count) {
         wave.first_low = static_cast<std::uint32_t>(done);
         wave.first_high = static_cast<std::uint32_t>(done >> 32U);
         wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(queues.capacity, samples - done));
@@ -167,6 +168,10 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
         }
         if (progress) {
             progress(done + wave.count, samples);
+        }
+        if (checkpoints.due && checkpoints.due()) {
+            add_to_film(pending, queues.capacity, film);
+            checkpoints.save(done + wave.count);
         }
     }
     add_to_film(pending, queues.capacity, film);

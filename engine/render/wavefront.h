@@ -11,9 +11,11 @@ namespace sahl {
 device::WaveConstants wave_constants(const RenderSettings& settings, const Crop& crop);
 
 /// Generates all camera samples of `settings`, wave by wave, follows their ray trees and adds every
-/// contribution to `film`. Looks at `stop` before each generation, see Renderer::render.
+/// contribution to `film`. Looks at `stop` before each generation, see Renderer::render; at `checkpoints`
+/// between waves.
 RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants& camera,
                              const RenderSettings& settings, const Crop& crop, Film& film,
-                             const ProgressCallback& progress, const std::stop_token& stop);
+                             const ProgressCallback& progress, const std::stop_token& stop,
+                             const Checkpoints& checkpoints);
 
 }  // namespace sahl

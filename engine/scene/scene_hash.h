@@ -1,0 +1,14 @@
+// Whether two scenes are the same but for their cameras.
+#pragma once
+
+#include <cstdint>
+
+#include "engine/scene/scene.h"
+
+namespace sahl {
+
+/// Of all that becomes device data: everything but cameras, resolution, depth and names. Equal scenes have
+/// equal hashes; of 2^32 scenes two different ones may meet.
+std::uint64_t hash_without_cameras(const Scene& scene);
+
+}  // namespace sahl
