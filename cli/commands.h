@@ -15,6 +15,7 @@ struct Command {
 
 /// `common` has to outlive the command.
 Command add_render_command(CLI::App& app, CommonOptions& common);
+Command add_batch_command(CLI::App& app, CommonOptions& common);
 Command add_profile_command(CLI::App& app, CommonOptions& common);
 /// To `add_profile_command`'s.
 Command add_profile_diff_command(CLI::App& profile, CommonOptions& common);

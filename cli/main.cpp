@@ -119,6 +119,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
     app.footer(
         "Examples:\n"
         "  sahl render scene.nff -o image.png\n"
+        "  sahl batch night.json\n"
         "  sahl compare image.png reference.png --threshold 2/255\n"
         "  sahl info scene.json\n"
         "  sahl devices\n"
@@ -132,6 +133,7 @@ ExitCode run(int argc, char** argv, CommonOptions& common) {
                                         profile,
                                         add_render_command(app, common),
                                         add_explain_command(app, common),
+                                        add_batch_command(app, common),
                                         add_compare_command(app, common),
                                         add_info_command(app, common),
                                         add_convert_command(app, common),

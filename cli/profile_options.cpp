@@ -25,7 +25,7 @@ void add_profile_options(CLI::App& command, ProfileOptions& options) {
         "image to write in each frame (default: encoded as PNG and thrown away)");
     add_scene_options(command, options.render.loading);
     add_image_options(command, options.render);
-    add_tree_options(command, options.render);
+    add_tree_options(command, options.render.build_quality, options.render.traversal);
     add_memory_limit(command, options.render.max_memory);
     add_value(
         command, "--repeat", "N",

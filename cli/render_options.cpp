@@ -29,6 +29,15 @@ std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
     return aovs;
 }
 
+void check_compression_name(const std::string& text) {
+    const std::vector<std::string> names = compression_names();
+    if (std::find(names.begin(), names.end(), text.substr(0, text.find(':'))) == names.end()) {
+        refuse("--compression", text, fmt::format("one of {}", fmt::join(names, ", ")));
+    }
+}
+
+}  // namespace
+
 void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
     OptionWords words{.list = true, .alone = std::string(all_aovs)};
     for (const AovName& name : aov_names) words.words.emplace_back(name.name);
@@ -37,13 +46,6 @@ void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
         fmt::format("channels beside the image in EXR files: {}, or several of {}", words.alone,
                     fmt::join(words.words, ", ")));
     set_words(*option, std::move(words));
-}
-
-void check_compression_name(const std::string& text) {
-    const std::vector<std::string> names = compression_names();
-    if (std::find(names.begin(), names.end(), text.substr(0, text.find(':'))) == names.end()) {
-        refuse("--compression", text, fmt::format("one of {}", fmt::join(names, ", ")));
-    }
 }
 
 void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
@@ -75,8 +77,6 @@ void add_encoding_options(CLI::App& command, OutputSettings& encoding) {
                     either(compression_names())));
     set_words(*compression, {compression_names()});
 }
-
-}  // namespace
 
 void add_view_options(CLI::App& command, RenderOptions& options) {
     add_value(
@@ -117,14 +117,14 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
         "only these pixels; X1 and Y1 are just outside");
 }
 
-void add_tree_options(CLI::App& command, RenderOptions& options) {
+void add_tree_options(CLI::App& command, BuildQuality& quality, std::optional<Traversal>& traversal) {
     add_choice<BuildQuality>(
-        command, "--build-quality", "QUALITY", options.build_quality,
+        command, "--build-quality", "QUALITY", quality,
         {{"high", BuildQuality::high}, {"fast", BuildQuality::fast}},
         "of the tree over the primitives: fast builds it in less time, and rays take longer "
         "(default: high)");
     add_choice<Traversal>(
-        command, "--traversal", "WAY", options.traversal,
+        command, "--traversal", "WAY", traversal,
         {{"packet", Traversal::packet}, {"stream", Traversal::stream}, {"scalar", Traversal::scalar}},
         "of rays through the tree, which changes no image: neighbours together, single rays "
         "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
@@ -150,7 +150,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     add_image_options(command, options);
     add_aov_option(command, options.aovs);
     add_encoding_options(command, options.encoding);
-    add_tree_options(command, options);
+    add_tree_options(command, options.build_quality, options.traversal);
     add_memory_limit(command, options.max_memory);
     command
         .add_flag("--dry-run", options.dry_run,

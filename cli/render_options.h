@@ -35,7 +35,12 @@ void add_view_options(CLI::App& command, RenderOptions& options);
 void add_image_options(CLI::App& command, RenderOptions& options);
 
 /// How the tree is built and walked through.
-void add_tree_options(CLI::App& command, RenderOptions& options);
+void add_tree_options(CLI::App& command, BuildQuality& quality, std::optional<Traversal>& traversal);
+
+/// `--aov`.
+void add_aov_option(CLI::App& command, std::vector<Aov>& aovs);
+/// `--transfer`, `--rounding`, `--exposure`, `--pixel-type` and `--compression`.
+void add_encoding_options(CLI::App& command, OutputSettings& encoding);
 
 void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit);
 

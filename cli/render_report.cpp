@@ -38,15 +38,15 @@ Json job_event(const char* name, const RenderOptions& options, const Job& job, c
     return event;
 }
 
-GenerationCounts total(const RenderStatistics& statistics) {
+}  // namespace
+
+GenerationCounts total_rays(const RenderStatistics& statistics) {
     return std::accumulate(
         statistics.generations.begin(), statistics.generations.end(), GenerationCounts{},
         [](const GenerationCounts& sum, const GenerationCounts& generation) {
             return GenerationCounts{sum.rays + generation.rays, sum.shadow_rays + generation.shadow_rays};
         });
 }
-
-}  // namespace
 
 bool is_partial(const Rendered& image) { return image.statistics.finished_pixels < pixel_count(image.size); }
 
@@ -94,7 +94,7 @@ void print_image(const Rendered& image) {
         generations.push_back({{"rays", generation.rays}, {"shadow_rays", generation.shadow_rays}});
     }
     const std::vector<std::string> paths = paths_of(image.outputs);
-    const GenerationCounts rays = total(image.statistics);
+    const GenerationCounts rays = total_rays(image.statistics);
     print_event({{"event", "image"},
                  {"path", paths.front()},
                  {"paths", paths},
@@ -111,7 +111,7 @@ void print_image(const Rendered& image) {
 }
 
 void say_image(const Rendered& image) {
-    const GenerationCounts rays = total(image.statistics);
+    const GenerationCounts rays = total_rays(image.statistics);
     const double seconds = image.statistics.seconds;
     const double rate = seconds > 0 ? static_cast<double>(rays.rays + rays.shadow_rays) / seconds : 0;
     fmt::print(stderr, "wrote {}  {}x{}, depth {}, {} spp, {:.2f} s, {}rays/s\n",

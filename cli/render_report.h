@@ -39,6 +39,9 @@ constexpr std::uint64_t pixel_count(const Resolution& size) {
     return std::uint64_t(size.width) * std::uint64_t(size.height);
 }
 
+/// Over all generations.
+GenerationCounts total_rays(const RenderStatistics& statistics);
+
 /// Whether rendering was interrupted before all pixels were finished.
 bool is_partial(const Rendered& image);
 

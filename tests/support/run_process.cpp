@@ -168,6 +168,8 @@ Process::~Process() {
     impl_->wait();
 }
 
+pid_t Process::id() const { return impl_->child; }
+
 void Process::send_signal(int number) const { kill(impl_->child, number); }
 
 bool Process::wait_for_output() {

@@ -2,6 +2,8 @@
 // and how it ends.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -40,6 +42,7 @@ public:
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
+    pid_t id() const;
     void send_signal(int number) const;
     /// Reads what it writes until a whole line of standard output is there; false at its end.
     bool wait_for_output();
