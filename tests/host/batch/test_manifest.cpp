@@ -178,4 +178,18 @@ TEST_CASE("batch manifest: it is one by its key 'jobs', whatever its name", "[ba
     CHECK_FALSE(is_manifest("balls.nff"));
 }
 
+TEST_CASE("batch manifest: the examples of the documentation expand, and the schema takes them", "[batch]") {
+    int found = 0;
+    for (const auto& entry :
+         fs::directory_iterator(fs::path(std::getenv("SAHL_SOURCE_DIR")) / "docs/examples/batch")) {
+        if (entry.path().extension() != ".json") continue;
+        ++found;
+        INFO(entry.path());
+        CHECK_FALSE(expand_batch(read_manifest(entry.path())).empty());
+        std::ifstream file(entry.path());
+        CHECK(schema_takes({std::istreambuf_iterator<char>(file), {}}));
+    }
+    CHECK(found > 0);
+}
+
 }  // namespace sahl::tests
