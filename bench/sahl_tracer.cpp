@@ -80,11 +80,11 @@ double SahlTracer::trace(const std::string& way, Clock clock) {
     Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + way);
     const double start = seconds_now(clock);
     if (batch.occlusion) {
-        kernel.launch(launch, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                       scene.constants, batch.rays, batch.ids, batch.t_max, batch.hit_ids, batch.capacity,
                       batch.count);
     } else {
-        kernel.launch(launch, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                       scene.constants, batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.capacity,
                       batch.count);
     }

@@ -6,11 +6,11 @@
 #include "kernels/intersect_stream.cl"
 
 kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* leaves,
-                            const global float* polygon_vertices, const global DeviceInstance* instances,
+                            const global float* outlines, const global DeviceInstance* instances,
                             const SceneConstants scene, const global float* rays, const global uint* ray_ids,
                             const global float* t_max, global uint* occlusion, const uint capacity,
                             const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent};
     SAHL_FOR_EACH_RAY(i, count) {
         Ray ray = load_ray(rays, ray_ids, capacity, i);
         occlusion[i] = any_hit(&bvh, &ray, t_max[i]);
@@ -34,11 +34,11 @@ static inline void store_occlusions(const ShadowRays* list, global uint* occlusi
 }
 
 kernel void occluded_packet(const global BvhNode* nodes, const global uchar* leaves,
-                            const global float* polygon_vertices, const global DeviceInstance* instances,
+                            const global float* outlines, const global DeviceInstance* instances,
                             const SceneConstants scene, const global float* rays, const global uint* ray_ids,
                             const global float* t_max, global uint* occlusion, const uint capacity,
                             const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent};
     const uint first = (uint)get_global_id(0) * SAHL_PACKET_RAYS;
     if (first < count) {
         const uint rays_here = SAHL_MIN(count - first, SAHL_PACKET_RAYS);
@@ -56,11 +56,11 @@ kernel void occluded_packet(const global BvhNode* nodes, const global uchar* lea
 }
 
 kernel void occluded_stream(const global BvhNode* nodes, const global uchar* leaves,
-                            const global float* polygon_vertices, const global DeviceInstance* instances,
+                            const global float* outlines, const global DeviceInstance* instances,
                             const SceneConstants scene, const global float* rays, const global uint* ray_ids,
                             const global float* t_max, global uint* occlusion, const uint capacity,
                             const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent};
     const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
     if (first < count) {
         ShadowRays list;

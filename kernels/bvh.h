@@ -20,7 +20,7 @@
 typedef struct {
     const global BvhNode* nodes;
     const global uchar* leaves;
-    const global float* polygon_vertices;
+    const global float* outlines;
     const global DeviceInstance* instances;
     float extent;  // largest |coordinate| of the scene
 #ifdef SAHL_COUNT_VISITS

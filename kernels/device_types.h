@@ -100,17 +100,25 @@ typedef struct {
 } QuadricBlock;
 SAHL_STATIC_ASSERT(sizeof(QuadricBlock) == 256, "QuadricBlock is four lines");
 
-// Four polygons: unit normal and a point of the plane, and a range of the polygon vertices
-// (counted in vertices). Unused lanes have a NaN normal and no vertices.
+// One polygon: unit normal and a point of the plane, box, and where its outline begins in the scene's
+// outlines (counted in groups).
 typedef struct {
-    float normal_x[4], normal_y[4], normal_z[4];
-    float x[4], y[4], z[4];
-    sahl_uint first_vertex[4];
-    sahl_uint vertex_count[4];
-    sahl_uint id[4];
-    sahl_uint spare[12];
+    float normal[3], point[3];
+    float lo[3], hi[3];
+    sahl_uint first_group;
+    sahl_uint corner_count;
+    sahl_uint id;
+    sahl_uint spare;
 } PolygonBlock;
-SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 192, "PolygonBlock is three lines");
+SAHL_STATIC_ASSERT(sizeof(PolygonBlock) == 64, "PolygonBlock is one line");
+
+// Seven edges of an outline: eight corners, of which the last is the next group's first. Behind the last
+// corner comes the first one again, to the group's end.
+#define SAHL_OUTLINE_EDGES 7u
+typedef struct {
+    float x[8], y[8], z[8];
+} OutlineGroup;
+SAHL_STATIC_ASSERT(sizeof(OutlineGroup) == 96, "OutlineGroup is 24 floats");
 
 // A group in the world. Rows of object_from_world: x, y, z and the translation, then what these four
 // floats lack of the double precision values.
@@ -132,8 +140,8 @@ SAHL_STATIC_ASSERT(sizeof(DeviceInstance) == 128, "DeviceInstance is two lines")
 //   sphere     centre, radius
 //   ellipsoid, disc, box   rows 0..2 of m, origin
 //   cone, solid cone       rows 0..2 of m, origin, slope
-//   polygon    unit normal, a point, then (bits of uints) first vertex, vertex count, then what u and
-//              v are the products of with the vector from the point
+//   polygon    unit normal, a point, then (bits of uints) the outline's first group, corner count, then what
+//              u and v are the products of with the vector from the point
 // For all but triangles and uv each vector is three floats and the three that they lack of the
 // double precision value, each number a float and the one it lacks.
 #define SAHL_PRIMITIVE_SMOOTH 1u

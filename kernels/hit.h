@@ -22,6 +22,8 @@ typedef struct {
 #define SAHL_HIT_NOTHING 0u
 #define SAHL_HIT_TRANSPARENT 1u
 #define SAHL_HIT_OPAQUE 2u
+// Not an occlusion: the state is the first member of Crossings, which take all hits.
+#define SAHL_HIT_COLLECT 4u
 
 /// A surface's place in the order of surfaces: by instance, then by primitive.
 static inline ulong surface_rank(uint instance, uint primitive) { return (ulong)instance << 32 | primitive; }
@@ -48,11 +50,40 @@ static inline HitState hit_state(float t_min, float t_max) {
     return state;
 }
 
-/// Hits of `state`'s range behind the one it holds.
-static inline HitState hit_state_behind(HitState state, float t_max) {
-    HitState next = hit_state(state.t, t_max);
-    next.min_rank = surface_rank(state.instance, state.primitive);
-    return next;
+// More than most rays meet; the others walk on behind the last.
+#define SAHL_MOST_CROSSINGS 8u
+
+/// The first hits of state's range, in order.
+typedef struct {
+    HitState state;
+    float t[SAHL_MOST_CROSSINGS];
+    ulong rank[SAHL_MOST_CROSSINGS];
+    uint count;
+} Crossings;
+
+/// Takes a hit of state's range into its place; where that is full, the last one makes room and hits behind
+/// the new last one are of no interest any more.
+static inline void insert_crossing(Crossings* crossings, float t, ulong rank) {
+    uint place = crossings->count;
+    while (place > 0u && (t < crossings->t[place - 1u] ||
+                          (t == crossings->t[place - 1u] && rank <= crossings->rank[place - 1u]))) {
+        --place;
+    }
+    if (place < crossings->count && t == crossings->t[place] && rank == crossings->rank[place]) {
+        return;  // a triangle in two leaves
+    }
+    const uint last = SAHL_MIN(crossings->count, SAHL_MOST_CROSSINGS - 1u);
+    for (uint k = last; k > place; --k) {
+        crossings->t[k] = crossings->t[k - 1u];
+        crossings->rank[k] = crossings->rank[k - 1u];
+    }
+    crossings->t[place] = t;
+    crossings->rank[place] = rank;
+    crossings->count = last + 1u;
+    if (crossings->count == SAHL_MOST_CROSSINGS) {
+        crossings->state.t = crossings->t[last];
+        crossings->state.before_rank = crossings->rank[last];
+    }
 }
 
 /// Whether surface `id` is seen by a ray that comes from its front or its back.
@@ -61,7 +92,7 @@ static inline bool is_seen_from(uint id, bool front) {
 }
 
 /// Offers a hit. A shadow ray (any_hit) keeps its range when it meets a transparent surface and
-/// only remembers it. NaN distances are never taken.
+/// only remembers it, Crossings gather all hits. NaN distances are never taken.
 static inline void offer_hit(HitState* state, float t, float u, float v, uint id, bool any_hit) {
     uint primitive = id & SAHL_ID_MASK;
     ulong rank = surface_rank(state->inside_of, primitive);
@@ -72,6 +103,10 @@ static inline void offer_hit(HitState* state, float t, float u, float v, uint id
     }
     if (any_hit) {
         state->occlusion |= (id & SAHL_ID_TRANSPARENT) ? SAHL_HIT_TRANSPARENT : SAHL_HIT_OPAQUE;
+        return;
+    }
+    if (state->occlusion == SAHL_HIT_COLLECT) {
+        insert_crossing((Crossings*)state, t, rank);
         return;
     }
     state->t = t;

@@ -1,4 +1,4 @@
-// Ray intersection with planar polygons, convex or concave, one ray against a block of four.
+// Ray intersection with a planar polygon, convex or concave: one ray, seven edges at a time.
 //
 // The distance comes from the plane, kept to the polygon's box as for triangles. Inside or outside is decided
 // by crossings of the sheared vertices (the shear of triangle.h) with the half-axis y = 0, x > 0; edge
@@ -22,58 +22,52 @@
                        (SAHL_MIN(ay, by) <= 0.0f) & (SAHL_MAX(ay, by) >= 0.0f);                   \
         *inside ^= ((ay > 0.0f) != (by > 0.0f)) & ((edge > 0.0f) == (by > ay));                   \
     }
-SAHL_DEFINE_CROSS_EDGE(float, int)
+SAHL_DEFINE_CROSS_EDGE(float8, int8)
 SAHL_DEFINE_CROSS_EDGE(float16, int16)
 
-/// Whether the ray passes through the polygon or exactly through its outline; lo, hi: its box.
-static inline bool polygon_contains(const global float* vertices, uint count, const RayShear* shear,
-                                    float* lo, float* hi) {
-    int inside = 0, on_outline = 0;
-    float ax = 0.0f, ay = 0.0f;
-    float3 least = INFINITY, greatest = -INFINITY;
-    // Once around, from the last vertex.
-    const global float* vertex = vertices + 3u * (count - 1u);
-    for (uint i = 0; i <= count; ++i) {
-        float z = vertex[shear->kz] - shear->oz;
-        float bx = fma(z, shear->sx, vertex[shear->kx] - shear->ox);
-        float by = fma(z, shear->sy, vertex[shear->ky] - shear->oy);
-        if (i > 0u) {
-            cross_edge(ax, ay, bx, by, &inside, &on_outline);
-        }
-        least = min3(least, load3(vertex));
-        greatest = max3(greatest, load3(vertex));
-        ax = bx;
-        ay = by;
-        vertex = vertices + 3u * i;
-    }
-    vstore3(least, 0, lo);
-    vstore3(greatest, 0, hi);
-    return (inside | on_outline) != 0;
+static inline const global OutlineGroup* outline_of(const global PolygonBlock* block,
+                                                    const global float* outlines) {
+    return (const global OutlineGroup*)outlines + block->first_group;
 }
 
-static inline void intersect_polygons(const global PolygonBlock* block, const global float* polygon_vertices,
-                                      const Ray* ray, const RayShear* shear, const RayBoxTest* boxes,
-                                      HitState* state, bool any_hit) {
-    float3 o = ray->origin, d = ray->direction;
-    float4 nd, doubt;
-    float4 t = cross_planes(vload4(0, block->normal_x), vload4(0, block->normal_y),
-                            vload4(0, block->normal_z), vload4(0, block->x) - o.x, vload4(0, block->y) - o.y,
-                            vload4(0, block->z) - o.z, (float4)(d.x), (float4)(d.y), (float4)(d.z),
-                            (float4)(fabs(o.x) + fabs(o.y) + fabs(o.z)), &nd, &doubt);
-    // NaN (a ray in the plane) passes.
-    uint lanes = mask4(~((t < state->t_min - doubt) | (t > state->t + doubt)) &
-                       (vload4(0, block->vertex_count) != 0u));
-    while (lanes != 0u) {
-        uint lane = lowest_lane(lanes);
-        lanes &= lanes - 1u;
-        uint id = block->id[lane];
-        const global float* vertices = polygon_vertices + 3u * block->first_vertex[lane];
-        float lo[3], hi[3];
-        if ((id & SAHL_ID_MASK) != ray->exclude && is_seen_from(id, ((float*)&nd)[lane] <= 0.0f) &&
-            polygon_contains(vertices, block->vertex_count[lane], shear, lo, hi)) {
-            offer_hit(state, keep_to_box(((float*)&t)[lane], lo, hi, boxes), 0.0f, 0.0f, id, any_hit);
-        }
+/// Whether the ray passes through the polygon or exactly through its outline.
+static inline bool polygon_contains(const global OutlineGroup* group, uint corner_count,
+                                    const RayShear* shear) {
+    int8 inside = 0, on_outline = 0;
+    for (uint first = 0; first < corner_count; first += SAHL_OUTLINE_EDGES, ++group) {
+        const global float* axes = (const global float*)group;
+        const float8 z = vload8(shear->kz, axes) - shear->oz;
+        const float8 x = fma(z, (float8)(shear->sx), vload8(shear->kx, axes) - shear->ox);
+        const float8 y = fma(z, (float8)(shear->sy), vload8(shear->ky, axes) - shear->oy);
+        // The last lane's edge goes nowhere: it changes nothing unless the ray meets a corner.
+        cross_edge(x, y, x.s12345677, y.s12345677, &inside, &on_outline);
     }
+    const int4 odd = inside.lo ^ inside.hi, on = on_outline.lo | on_outline.hi;
+    return ((odd.x ^ odd.y ^ odd.z ^ odd.w) | on.x | on.y | on.z | on.w) != 0;
+}
+
+static inline void intersect_polygon(const global PolygonBlock* block, const global float* outlines,
+                                     const Ray* ray, const RayShear* shear, const RayBoxTest* boxes,
+                                     HitState* state, bool any_hit) {
+    const float3 o = ray->origin, d = ray->direction;
+    const uint id = block->id;
+    float4 nd, doubt;
+    const float t =
+        cross_planes((float4)(block->normal[0]), (float4)(block->normal[1]), (float4)(block->normal[2]),
+                     (float4)(block->point[0] - o.x), (float4)(block->point[1] - o.y),
+                     (float4)(block->point[2] - o.z), (float4)(d.x), (float4)(d.y), (float4)(d.z),
+                     (float4)(fabs(o.x) + fabs(o.y) + fabs(o.z)), &nd, &doubt)
+            .x;
+    // NaN (a ray in the plane) passes.
+    if (t < state->t_min - doubt.x || t > state->t + doubt.x || (id & SAHL_ID_MASK) == ray->exclude ||
+        !is_seen_from(id, nd.x <= 0.0f) ||
+        !polygon_contains(outline_of(block, outlines), block->corner_count, shear)) {
+        return;
+    }
+    float lo[3], hi[3];
+    vstore3(load3(block->lo), 0, lo);
+    vstore3(load3(block->hi), 0, hi);
+    offer_hit(state, keep_to_box(t, lo, hi, boxes), 0.0f, 0.0f, id, any_hit);
 }
 
 #endif

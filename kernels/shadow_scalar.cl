@@ -4,14 +4,14 @@
 #include "kernels/shadow_work.h"
 
 kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leaves,
-                          const global float* polygon_vertices, const global DeviceInstance* instances,
+                          const global float* outlines, const global DeviceInstance* instances,
                           const global DevicePrimitive* primitives, const global DeviceMaterial* materials,
                           const global DeviceLight* lights, const SceneConstants scene,
                           const global uint* hit_ids, const global float* shadow_surfaces,
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity,
                           const uint count SAHL_COUNTS_PARAMETER) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent SAHL_COUNTS_OF_ITEM};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
     const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
                              shadow_light, outcomes,  contributions, capacity};
     SAHL_FOR_EACH_RAY(i, count) {

@@ -5,14 +5,14 @@
 #include "kernels/traverse_stream.h"
 
 kernel void shadow_stream(const global BvhNode* nodes, const global uchar* leaves,
-                          const global float* polygon_vertices, const global DeviceInstance* instances,
+                          const global float* outlines, const global DeviceInstance* instances,
                           const global DevicePrimitive* primitives, const global DeviceMaterial* materials,
                           const global DeviceLight* lights, const SceneConstants scene,
                           const global uint* hit_ids, const global float* shadow_surfaces,
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity,
                           const uint count SAHL_COUNTS_PARAMETER) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, scene.extent SAHL_COUNTS_OF_ITEM};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
     const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
                              shadow_light, outcomes,  contributions, capacity};
     const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;

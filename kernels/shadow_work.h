@@ -52,11 +52,17 @@ static inline float3 transmittance(const Bvh* bvh, const ShadowWork* work, const
         return (float3)(occlusion == SAHL_HIT_NOTHING ? 1.0f : 0.0f);
     }
     float3 through = (float3)(1.0f);
-    HitState hit = closest_hit(bvh, ray, hit_state(0.0f, t_max));
-    while (hit.primitive != SAHL_NO_PRIMITIVE) {
-        through *= load3(work->materials[work->primitives[hit.primitive].material].transmission);
-        hit = closest_hit(bvh, ray, hit_state_behind(hit, t_max));
-    }
+    HitState range = hit_state(0.0f, t_max);
+    Crossings crossings;
+    do {
+        collect_crossings(bvh, ray, range, &crossings);
+        for (uint k = 0; k < crossings.count; ++k) {
+            const uint primitive = (uint)crossings.rank[k];
+            through *= load3(work->materials[work->primitives[primitive].material].transmission);
+            range.t_min = crossings.t[k];
+            range.min_rank = crossings.rank[k];
+        }
+    } while (crossings.count == SAHL_MOST_CROSSINGS);
     return through;
 }
 

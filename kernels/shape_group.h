@@ -136,60 +136,52 @@ static inline bool intersect_quadrics16(const GroupTest* test, const global Quad
 }
 
 /// polygon_contains() for the rays of one pass.
-static inline Lanes16 polygon_contains16(const global float* vertices, uint count, const RayGroup* rays,
-                                         const PassAxes* pass, float* lo, float* hi) {
+static inline Lanes16 polygon_contains16(const global OutlineGroup* group, uint corner_count,
+                                         const RayGroup* rays, const PassAxes* pass) {
     const float16 ox = rays->origin[pass->kx], oy = rays->origin[pass->ky], oz = rays->origin[pass->kz];
     int16 inside = 0, on_outline = 0;
     float16 ax = 0.0f, ay = 0.0f;
-    float3 least = INFINITY, greatest = -INFINITY;
-    const global float* vertex = vertices + 3u * (count - 1u);
-    for (uint i = 0; i <= count; ++i) {
-        float16 z = vertex[pass->kz] - oz;
-        float16 bx = fma(z, rays->shear_x, vertex[pass->kx] - ox);
-        float16 by = fma(z, rays->shear_y, vertex[pass->ky] - oy);
-        if (i > 0u) {
-            cross_edge(ax, ay, bx, by, &inside, &on_outline);
+    for (uint first = 0; first < corner_count; first += SAHL_OUTLINE_EDGES, ++group) {
+        const global float* axes = (const global float*)group;
+        const uint edges = SAHL_MIN(corner_count - first, SAHL_OUTLINE_EDGES);
+        for (uint i = first == 0u ? 0u : 1u; i <= edges; ++i) {
+            const float16 z = axes[8u * pass->kz + i] - oz;
+            const float16 bx = fma(z, rays->shear_x, axes[8u * pass->kx + i] - ox);
+            const float16 by = fma(z, rays->shear_y, axes[8u * pass->ky + i] - oy);
+            if (i > 0u) {
+                cross_edge(ax, ay, bx, by, &inside, &on_outline);
+            }
+            ax = bx;
+            ay = by;
         }
-        least = min3(least, load3(vertex));
-        greatest = max3(greatest, load3(vertex));
-        ax = bx;
-        ay = by;
-        vertex = vertices + 3u * i;
     }
-    vstore3(least, 0, lo);
-    vstore3(greatest, 0, hi);
     return not16(equal16(inside | on_outline, (int16)(0)));
 }
 
-static inline bool intersect_polygons16(const GroupTest* test, const global PolygonBlock* block,
-                                        const global float* polygon_vertices) {
+static inline bool intersect_polygon16(const GroupTest* test, const global PolygonBlock* block,
+                                       const global float* outlines) {
     const float16* o = test->rays->origin;
     const float16* d = test->rays->direction;
-    const float16 origin_sum = fabs(o[0]) + fabs(o[1]) + fabs(o[2]);
-    bool taken = false;
-    // Unused lanes, which have no vertices, are the last ones.
-    for (uint lane = 0; lane < SAHL_BLOCK_WIDTH && block->vertex_count[lane] != 0u; ++lane) {
-        const uint id = block->id[lane];
-        float16 nd, doubt;
-        float16 t =
-            cross_planes((float16)(block->normal_x[lane]), (float16)(block->normal_y[lane]),
-                         (float16)(block->normal_z[lane]), block->x[lane] - o[0], block->y[lane] - o[1],
-                         block->z[lane] - o[2], d[0], d[1], d[2], origin_sum, &nd, &doubt);
-        // NaN (a ray in the plane) passes.
-        Lanes16 lanes = not16(less16(t, -doubt) | less16(*test->far + doubt, t));
-        lanes &= less16((float16)(0.0f), *test->far);
-        lanes &= seen_from16(id, less_equal16(nd, (float16)(0.0f)));
-        lanes &= not16(equal16((int16)((int)(id & SAHL_ID_MASK)), test->rays->exclude));
-        if (!any16(lanes)) {
-            continue;
-        }
-        float lo[3], hi[3];
-        lanes &= polygon_contains16(polygon_vertices + 3u * block->first_vertex[lane],
-                                    block->vertex_count[lane], test->rays, test->pass, lo, hi);
-        t = keep_to_box16(t, lo, hi, test->rays, test->pass->octant);
-        taken |= offer_crossings(test, lanes, t, id);
+    const uint id = block->id;
+    float16 nd, doubt;
+    float16 t =
+        cross_planes((float16)(block->normal[0]), (float16)(block->normal[1]), (float16)(block->normal[2]),
+                     block->point[0] - o[0], block->point[1] - o[1], block->point[2] - o[2], d[0], d[1], d[2],
+                     fabs(o[0]) + fabs(o[1]) + fabs(o[2]), &nd, &doubt);
+    // NaN (a ray in the plane) passes.
+    Lanes16 lanes = not16(less16(t, -doubt) | less16(*test->far + doubt, t));
+    lanes &= less16((float16)(0.0f), *test->far);
+    lanes &= seen_from16(id, less_equal16(nd, (float16)(0.0f)));
+    lanes &= not16(equal16((int16)((int)(id & SAHL_ID_MASK)), test->rays->exclude));
+    if (!any16(lanes)) {
+        return false;
     }
-    return taken;
+    lanes &= polygon_contains16(outline_of(block, outlines), block->corner_count, test->rays, test->pass);
+    float lo[3], hi[3];
+    vstore3(load3(block->lo), 0, lo);
+    vstore3(load3(block->hi), 0, hi);
+    t = keep_to_box16(t, lo, hi, test->rays, test->pass->octant);
+    return offer_crossings(test, lanes, t, id);
 }
 
 #endif

@@ -104,7 +104,7 @@ static inline bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTes
         case SAHL_KIND_SPHERE:
             return intersect_spheres16(test, (const global SphereBlock*)block);
         case SAHL_KIND_POLYGON:
-            return intersect_polygons16(test, (const global PolygonBlock*)block, bvh->polygon_vertices);
+            return intersect_polygon16(test, (const global PolygonBlock*)block, bvh->outlines);
         default:
             return intersect_quadrics16(test, (const global QuadricBlock*)block, child_kind(child));
     }

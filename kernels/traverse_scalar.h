@@ -52,8 +52,8 @@ static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, co
             intersect_cones((const global QuadricBlock*)block, ray, state, any_hit);
             break;
         case SAHL_KIND_POLYGON:
-            intersect_polygons((const global PolygonBlock*)block, bvh->polygon_vertices, ray, shear, boxes,
-                               state, any_hit);
+            intersect_polygon((const global PolygonBlock*)block, bvh->outlines, ray, shear, boxes, state,
+                              any_hit);
             break;
         case SAHL_KIND_SOLID_CONE:
             intersect_solid_cones((const global QuadricBlock*)block, ray, state, any_hit);
@@ -158,6 +158,14 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
 SAHL_NOINLINE HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState range) {
     traverse(bvh, ray, &range, false);
     return range;
+}
+
+/// The first hits of range, as many as `crossings` have room for.
+SAHL_NOINLINE void collect_crossings(const Bvh* bvh, const Ray* ray, HitState range, Crossings* crossings) {
+    crossings->state = range;
+    crossings->state.occlusion = SAHL_HIT_COLLECT;
+    crossings->count = 0;
+    traverse(bvh, ray, &crossings->state, false);
 }
 
 /// SAHL_HIT_OPAQUE, SAHL_HIT_TRANSPARENT (at least one, nothing opaque) or SAHL_HIT_NOTHING in

@@ -53,7 +53,7 @@ std::string scene_hash(const Scene& scene, std::size_t camera) {
     const LoweredScene lowered = lower_scene(scene);
     std::uint64_t hash = hash_of(lowered.primitives, fnv1a("sahl scene"));
     hash = hash_of(lowered.shape_data, hash);
-    hash = hash_of(lowered.polygon_vertices, hash);
+    hash = hash_of(lowered.outlines, hash);
     hash = hash_of(lowered.materials, hash);
     hash = hash_of(lowered.textures, hash);
     hash = hash_of(lowered.lights, hash);

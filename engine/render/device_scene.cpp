@@ -37,7 +37,7 @@ std::uint64_t bytes_of(const HostScene& host) {
     const auto bytes = [](const auto& values) { return std::span(values).size_bytes(); };
     const LoweredScene& lowered = host.lowered;
     return bytes(host.bvh.nodes) + bytes(host.bvh.leaves) + bytes(host.instances) +
-           bytes(lowered.primitives) + bytes(lowered.shape_data) + bytes(lowered.polygon_vertices) +
+           bytes(lowered.primitives) + bytes(lowered.shape_data) + bytes(lowered.outlines) +
            bytes(lowered.materials) + bytes(lowered.textures) + bytes(lowered.lights);
 }
 
@@ -58,7 +58,7 @@ DeviceScene make_device_scene(Device& device, const Scene& scene, const MemoryRe
     Uploader upload(device, building);
     out.nodes = upload.move(host.bvh.nodes, "BVH nodes");
     out.leaves = Buffer(device, pack_leaf_blocks(accountant, scene, host), "leaf blocks");
-    out.polygon_vertices = upload.move(host.lowered.polygon_vertices, "polygon vertices");
+    out.outlines = upload.move(host.lowered.outlines, "outlines of polygons");
     out.instances = upload.move(host.instances, "instances");
     out.primitives = upload.move(host.lowered.primitives, "primitives");
     out.shape_data = upload.move(host.lowered.shape_data, "shape data");

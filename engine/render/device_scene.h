@@ -12,7 +12,7 @@ namespace sahl {
 struct DeviceScene {
     Buffer nodes;
     Buffer leaves;
-    Buffer polygon_vertices;
+    Buffer outlines;
     Buffer instances;
     Buffer primitives;
     Buffer shape_data;

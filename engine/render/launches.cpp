@@ -88,9 +88,8 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const RayBatch& batch = q.batches[in_work.slot];
     launch_traversal(wavefront, wavefront.kernels.intersect,
                      per_traced_ray(wavefront, in_work, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
-                     &GenerationVisits::intersect, scene.nodes, scene.leaves, scene.polygon_vertices,
-                     scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity,
-                     in_work.count);
+                     &GenerationVisits::intersect, scene.nodes, scene.leaves, scene.outlines, scene.instances,
+                     scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
         wavefront.visits->generations[in_work.generation].hits += count_hits(q, in_work.count);
     }
@@ -112,10 +111,9 @@ void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributi
     RayQueues& q = wavefront.queues;
     launch_traversal(wavefront, wavefront.kernels.shadow,
                      per_traced_ray(wavefront, in_work, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
-                     &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.polygon_vertices,
-                     scene.instances, scene.primitives, scene.materials, scene.lights, scene.constants,
-                     q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity,
-                     in_work.count);
+                     &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.outlines, scene.instances,
+                     scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids,
+                     q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {

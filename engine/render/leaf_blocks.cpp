@@ -80,20 +80,28 @@ void pack_quadrics(const Scene& scene, const LoweredScene& lowered, const BvhLea
     });
 }
 
-void pack_polygons(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
-                   device::PolygonBlock& block) {
-    std::fill(std::begin(block.normal_x), std::end(block.normal_x), nan);
-    fill_ids(block);
-    for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
-        block.normal_x[k] = data[0];
-        block.normal_y[k] = data[1];
-        block.normal_z[k] = data[2];
-        block.x[k] = data[6];
-        block.y[k] = data[7];
-        block.z[k] = data[8];
-        block.first_vertex[k] = std::bit_cast<std::uint32_t>(data[12]);
-        block.vertex_count[k] = std::bit_cast<std::uint32_t>(data[13]);
-        block.id[k] = id;
+void pack_polygon(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
+                  device::PolygonBlock& block) {
+    for_each_lane(scene, lowered, leaf, [&](std::uint32_t, const float* data, std::uint32_t id) {
+        block.first_group = std::bit_cast<std::uint32_t>(data[12]);
+        block.corner_count = std::bit_cast<std::uint32_t>(data[13]);
+        block.id = id;
+        const auto* outline =
+            reinterpret_cast<const device::OutlineGroup*>(lowered.outlines.data()) + block.first_group;
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            block.normal[axis] = data[axis];
+            block.point[axis] = data[6 + axis];
+            block.lo[axis] = block.hi[axis] = data[6 + axis];
+        }
+        for (std::uint32_t i = 0; i < block.corner_count; ++i) {
+            const device::OutlineGroup& group = outline[i / SAHL_OUTLINE_EDGES];
+            const std::uint32_t lane = i % SAHL_OUTLINE_EDGES;
+            const float corner[3] = {group.x[lane], group.y[lane], group.z[lane]};
+            for (std::uint32_t axis = 0; axis < 3; ++axis) {
+                block.lo[axis] = std::min(block.lo[axis], corner[axis]);
+                block.hi[axis] = std::max(block.hi[axis], corner[axis]);
+            }
+        }
     });
 }
 
@@ -106,7 +114,7 @@ void pack(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf, 
             pack_spheres(scene, lowered, leaf, *reinterpret_cast<device::SphereBlock*>(block));
             break;
         case SAHL_KIND_POLYGON:
-            pack_polygons(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
+            pack_polygon(scene, lowered, leaf, *reinterpret_cast<device::PolygonBlock*>(block));
             break;
         case SAHL_KIND_INSTANCE:
             break;

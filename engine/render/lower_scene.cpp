@@ -70,6 +70,8 @@ dvec3 first_edge(const std::vector<vec3>& outline) {
     return glm::normalize(dvec3(*next) - dvec3(outline[0]));
 }
 
+constexpr std::size_t floats_of_group = sizeof(device::OutlineGroup) / sizeof(float);
+
 constexpr std::uint32_t MaterialTextures::*texture_slots[] = {
     &MaterialTextures::ambient, &MaterialTextures::diffuse, &MaterialTextures::specular,
     &MaterialTextures::emission, &MaterialTextures::reflection};
@@ -192,15 +194,23 @@ private:
         }
         push_exact(newell_normal(points_));
         push_exact(dvec3(points_[0]));
-        const auto first_vertex = static_cast<std::uint32_t>(out_.polygon_vertices.size() / 3);
-        out_.shape_data.push_back(std::bit_cast<float>(first_vertex));
+        const auto first_group = static_cast<std::uint32_t>(out_.outlines.size() / floats_of_group);
+        out_.shape_data.push_back(std::bit_cast<float>(first_group));
         out_.shape_data.push_back(std::bit_cast<float>(polygon.vertex_count));
         push_uv_axes(polygon);
-        for (const vec3& p : points_) {
-            out_.polygon_vertices.insert(out_.polygon_vertices.end(), {p.x, p.y, p.z});
-        }
+        push_outline();
         lowered_.kind = SAHL_KIND_POLYGON;
         bounds_ = point_bounds(points_);
+    }
+
+    /// Of the corners in points_.
+    void push_outline() {
+        for (std::size_t first = 0; first < points_.size(); first += SAHL_OUTLINE_EDGES) {
+            for (int axis = 0; axis < 3; ++axis) {
+                for (std::size_t i = first; i <= first + SAHL_OUTLINE_EDGES; ++i)
+                    out_.outlines.push_back(points_[i < points_.size() ? i : 0][axis]);
+            }
+        }
     }
 
     /// What u and v are the products of with a vector from the (transformed) first vertex.
@@ -376,12 +386,14 @@ device::DeviceTexture lower_texture(const Texture& texture) {
 
 }  // namespace
 
-std::size_t polygon_vertex_count(const Scene& scene) {
-    std::size_t count = 0;
+std::size_t outline_floats(const Scene& scene) {
+    std::size_t groups = 0;
     for (const Primitive& primitive : scene.primitives) {
-        if (primitive.kind == PrimitiveKind::polygon) count += scene.polygons[primitive.index].vertex_count;
+        if (primitive.kind != PrimitiveKind::polygon) continue;
+        const std::size_t edges = scene.polygons[primitive.index].vertex_count;
+        groups += (edges + SAHL_OUTLINE_EDGES - 1) / SAHL_OUTLINE_EDGES;
     }
-    return count;
+    return groups * floats_of_group;
 }
 
 std::size_t most_shape_data(const Scene& scene) {
@@ -406,7 +418,7 @@ LoweredScene lower_scene(const Scene& scene) {
     }
     LoweredScene out;
     out.shape_data.reserve(most_shape_data(scene));
-    out.polygon_vertices.reserve(3 * polygon_vertex_count(scene));
+    out.outlines.reserve(outline_floats(scene));
     out.primitives.reserve(count);
     out.build_primitives.reserve(most_references(count));  // as build_bvh() wants it
     Lowering lowering(scene, out);

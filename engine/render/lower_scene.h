@@ -14,7 +14,7 @@ namespace sahl {
 struct LoweredScene {
     std::vector<device::DevicePrimitive> primitives;  ///< by id
     std::vector<float> shape_data;                    ///< as device_types.h lays it out
-    std::vector<float> polygon_vertices;              ///< 3 floats a vertex
+    std::vector<float> outlines;                      ///< of polygons: OutlineGroups
     std::vector<device::DeviceMaterial> materials;
     std::vector<device::DeviceTexture> textures;
     std::vector<device::DeviceLight> lights;
@@ -27,8 +27,8 @@ struct LoweredScene {
 /// finite.
 LoweredScene lower_scene(const Scene& scene);
 
-/// Vertices of all polygons, those of polygons that are there several times as often.
-std::size_t polygon_vertex_count(const Scene& scene);
+/// Floats of LoweredScene::outlines.
+std::size_t outline_floats(const Scene& scene);
 
 /// As many floats as LoweredScene::shape_data has for `scene`, or more.
 std::size_t most_shape_data(const Scene& scene);

@@ -39,7 +39,7 @@ SceneMemory shading_memory(const Scene& scene, std::uint64_t shape_data, std::ui
     SceneMemory memory;
     memory.loaded = loaded_bytes(scene);
     memory.shapes = footprint<device::DevicePrimitive>(scene.primitives.size()) +
-                    footprint<float>(shape_data) + footprint<float>(3 * polygon_vertex_count(scene));
+                    footprint<float>(shape_data) + footprint<float>(outline_floats(scene));
     memory.instances = footprint<device::DeviceInstance>(instances);
     memory.materials = footprint<device::DeviceMaterial>(scene.materials.size()) +
                        footprint<device::DeviceTexture>(scene.textures.size()) +

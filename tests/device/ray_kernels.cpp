@@ -11,12 +11,12 @@ const char* const ray_kernels = R"(
 #include "kernels/shadow_packet.cl"
 #include "kernels/shadow_stream.cl"
 
-kernel void brute_force(const global uchar* leaves, const global float* polygon_vertices,
+kernel void brute_force(const global uchar* leaves, const global float* outlines,
                         const global DeviceInstance* instances, const global uint* children,
                         const global uint* child_instances, const uint child_count, const float extent,
                         const global float* rays, const global uint* ray_ids,
                         global float* hits, global uint* hit_ids, const uint count) {
-    const Bvh bvh = {0, leaves, polygon_vertices, instances, extent};
+    const Bvh bvh = {0, leaves, outlines, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         HitState state = hit_state(0.0f, INFINITY);
@@ -32,32 +32,36 @@ kernel void brute_force(const global uchar* leaves, const global float* polygon_
     }
 }
 
-kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
+kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
                       const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
                       global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
+    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         out[i] = any_hit(&bvh, &ray, t_max);
     }
 }
 
-kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* polygon_vertices,
+kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
                  const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
                  const uint longest, global uint* out, const uint count) {
-    const Bvh bvh = {nodes, leaves, polygon_vertices, instances, extent};
+    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
     TEST_FOR_EACH(i, count) {
         Ray ray = load_ray(rays, ray_ids, count, i);
         global uint* crossings = out + (size_t)i * (1u + 3u * longest);
         uint met = 0;
-        HitState hit = closest_hit(&bvh, &ray, hit_state(0.0f, t_max));
-        while (hit.primitive != SAHL_NO_PRIMITIVE && met < longest) {
-            crossings[1u + met] = hit.primitive;
-            crossings[1u + longest + met] = hit.instance;
-            crossings[1u + 2u * longest + met] = as_uint(hit.t);
-            ++met;
-            hit = closest_hit(&bvh, &ray, hit_state_behind(hit, t_max));
-        }
+        HitState range = hit_state(0.0f, t_max);
+        Crossings found;
+        do {
+            collect_crossings(&bvh, &ray, range, &found);
+            for (uint k = 0; k < found.count && met < longest; ++k, ++met) {
+                crossings[1u + met] = (uint)found.rank[k];
+                crossings[1u + longest + met] = (uint)(found.rank[k] >> 32);
+                crossings[1u + 2u * longest + met] = as_uint(found.t[k]);
+                range.t_min = found.t[k];
+                range.min_rank = found.rank[k];
+            }
+        } while (found.count == SAHL_MOST_CROSSINGS && met < longest);
         crossings[0] = met;
     }
 }

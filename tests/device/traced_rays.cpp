@@ -173,7 +173,7 @@ std::vector<TestHit> RayTracer::intersect(const DeviceScene& scene, const std::v
             fill(batch.hits);
             fill(batch.hit_ids);
             const std::string kernel = std::string("intersect_") + traversal;
-            version.runner.run(kernel, batch.count, scene.nodes, scene.leaves, scene.polygon_vertices,
+            version.runner.run(kernel, batch.count, scene.nodes, scene.leaves, scene.outlines,
                                scene.instances, scene.constants, batch.rays, batch.ids, batch.hits,
                                batch.hit_ids, batch.capacity);
             const std::vector<TestHit> hits = download(batch);
@@ -197,9 +197,9 @@ void RayTracer::shadow(const DeviceScene& scene, Buffer& hit_ids, Buffer& surfac
         for (const char* traversal : traversals) {
             light.write(std::span<const float>(before));
             const std::string kernel = std::string("shadow_") + traversal;
-            version.runner.run(kernel, count, scene.nodes, scene.leaves, scene.polygon_vertices,
-                               scene.instances, scene.primitives, scene.materials, scene.lights,
-                               scene.constants, hit_ids, surfaces, brought, outcomes, light, capacity);
+            version.runner.run(kernel, count, scene.nodes, scene.leaves, scene.outlines, scene.instances,
+                               scene.primitives, scene.materials, scene.lights, scene.constants, hit_ids,
+                               surfaces, brought, outcomes, light, capacity);
             const auto bits = KernelRunner::download<std::uint32_t>(light, std::size_t{3} * capacity);
             if (wanted.empty()) wanted = bits;
             std::vector<std::size_t> differing;
@@ -258,7 +258,7 @@ std::vector<glm::vec3> RayTracer::arriving(const DeviceScene& scene, const std::
 std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
     const Leaves leaves = all_leaves(scene);
-    scalar().run("brute_force", batch.count, scene.leaves, scene.polygon_vertices, scene.instances,
+    scalar().run("brute_force", batch.count, scene.leaves, scene.outlines, scene.instances,
                  scalar().upload(leaves.children), scalar().upload(leaves.instances),
                  static_cast<std::uint32_t>(leaves.children.size()), scene.constants.extent, batch.rays,
                  batch.ids, batch.hits, batch.hit_ids);
@@ -268,7 +268,7 @@ std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vecto
 std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                             float t_max) {
     Batch batch = upload(rays);
-    scalar().run("occlusion", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+    scalar().run("occlusion", batch.count, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                  scene.constants.extent, batch.rays, batch.ids, t_max, batch.hit_ids);
     return KernelRunner::download<Occlusion>(batch.hit_ids, batch.count);
 }
@@ -277,7 +277,7 @@ std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vecto
                                       float t_max) {
     Batch batch = upload(rays);
     Buffer out(device(), batch.count * sizeof(TestWalk), "crossings");
-    scalar().run("walk", batch.count, scene.nodes, scene.leaves, scene.polygon_vertices, scene.instances,
+    scalar().run("walk", batch.count, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                  scene.constants.extent, batch.rays, batch.ids, t_max, TestWalk::longest, out);
     return KernelRunner::download<TestWalk>(out, batch.count);
 }

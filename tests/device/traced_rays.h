@@ -45,7 +45,7 @@ struct TestSurface {
 /// What a shadow ray meets: SAHL_HIT_* of kernels/hit.h.
 enum class Occlusion : std::uint32_t { nothing = 0, transparent = 1, opaque = 2 };
 
-/// The crossings of a ray in order, by closest_hit() and hit_state_behind().
+/// The crossings of a ray in order, by collect_crossings().
 struct TestWalk {
     static constexpr std::uint32_t longest = 30;
     std::uint32_t count = 0;

@@ -109,7 +109,7 @@ TEST_CASE("blocks take the lines of their structs", "[bvh]") {
     CHECK(block_lines(SAHL_KIND_SPHERE) == 2);
     CHECK(block_lines(SAHL_KIND_ELLIPSOID) == 4);
     CHECK(block_lines(SAHL_KIND_CONE) == 4);
-    CHECK(block_lines(SAHL_KIND_POLYGON) == 3);
+    CHECK(block_lines(SAHL_KIND_POLYGON) == 1);
     CHECK(block_lines(SAHL_KIND_SOLID_CONE) == 4);
     CHECK(block_lines(SAHL_KIND_DISC) == 4);
     CHECK(block_lines(SAHL_KIND_BOX) == 4);

@@ -79,6 +79,35 @@ TEST_CASE("lowered shapes keep the precision of the scene") {
     check_near(vector_at(lowered, square.data), {0, 0, 1}, 1e-14);
 }
 
+TEST_CASE(
+    "an outline's groups begin with the corner that the last one ends with, and end with the first corner") {
+    Scene scene;
+    for (const std::uint32_t corners : {3U, 7U, 8U, 20U}) {
+        scene.primitives.push_back(
+            {PrimitiveKind::polygon, static_cast<std::uint32_t>(scene.polygons.size()), 0});
+        scene.polygons.push_back({static_cast<std::uint32_t>(scene.polygon_vertices.size()), corners});
+        for (std::uint32_t i = 0; i < corners; ++i) {
+            const double angle = 6.283185307179586 * i / corners;
+            scene.polygon_vertices.emplace_back(std::cos(angle), std::sin(angle), corners);
+        }
+    }
+    scene.materials.resize(1);
+    const LoweredScene lowered = lower_scene(scene);
+    REQUIRE(lowered.outlines.size() == 24 * (1 + 1 + 2 + 3));
+    CHECK(lowered.outlines.size() == outline_floats(scene));
+    std::size_t group = 0;
+    for (const Polygon& polygon : scene.polygons) {
+        for (std::uint32_t first = 0; first < polygon.vertex_count; first += 7, ++group) {
+            for (std::uint32_t lane = 0; lane < 8; ++lane) {
+                const std::uint32_t corner = first + lane < polygon.vertex_count ? first + lane : 0;
+                const glm::vec3 wanted = scene.polygon_vertices[polygon.first_vertex + corner];
+                const float* lanes = &lowered.outlines[24 * group + lane];
+                CHECK(glm::vec3(lanes[0], lanes[8], lanes[16]) == wanted);
+            }
+        }
+    }
+}
+
 TEST_CASE("normals stay outward under a mirroring transform") {
     const LoweredScene lowered = lower_scene(one_of_each(glm::scale(glm::dmat4(1), {1.0, 1.0, -2.0})));
     // The square and the triangle face +z in their own space, so -z in the mirrored world.
