@@ -80,13 +80,11 @@ double SahlTracer::trace(const std::string& way, Clock clock) {
     Kernel& kernel = kernel_of((batch.occlusion ? "occluded_" : "intersect_") + way);
     const double start = seconds_now(clock);
     if (batch.occlusion) {
-        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances,
-                      scene.constants, batch.rays, batch.ids, batch.t_max, batch.hit_ids, batch.capacity,
-                      batch.count);
+        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances, scene.constants,
+                      batch.rays, batch.ids, batch.t_max, batch.hit_ids, batch.capacity, batch.count);
     } else {
-        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances,
-                      scene.constants, batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.capacity,
-                      batch.count);
+        kernel.launch(launch, scene.nodes, scene.leaves, scene.outlines, scene.instances, scene.constants,
+                      batch.rays, batch.ids, batch.hits, batch.hit_ids, batch.capacity, batch.count);
     }
     device_.finish();
     return seconds_now(clock) - start;
