@@ -122,8 +122,8 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         INFO(line);
         CHECK(room.complete(item.typed) == item.replies);
     }
-    CHECK(room.complete({"sahl", ""}) ==
-          Words{"compare", "completion", "convert", "devices", "info", "man", "profile", "render", "warm"});
+    CHECK(room.complete({"sahl", ""}) == Words{"batch", "compare", "completion", "convert", "devices",
+                                               "explain", "info", "man", "profile", "render", "warm"});
 }
 
 TEST_CASE("completion: bash offers exactly the options of --help", "[cli]") {
