@@ -49,6 +49,8 @@ void add_profile_options(CLI::App& command, ProfileOptions& options) {
     add_export(command, "--export-csv", options.csv, "csv", "its rows as a table");
     add_export(command, "--export-trace", options.trace, "json",
                "all launches and host steps in time, for ui.perfetto.dev or chrome://tracing");
+    add_export(command, "--export-html", options.html, "html",
+               "charts and tables as a page for browsers, which needs no network");
 }
 
 }  // namespace sahl::cli

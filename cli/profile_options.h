@@ -3,10 +3,17 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/render_options.h"
 
 namespace sahl::cli {
+
+/// Two settings to be measured in turn; none: one profile.
+struct AbOptions {
+    std::vector<std::string> settings;
+    std::vector<SlowdownLimit> limits;
+};
 
 struct ProfileOptions {
     RenderOptions render;       ///< of it the scene, the image, the tree and the limit of memory
@@ -16,6 +23,8 @@ struct ProfileOptions {
     std::optional<std::string> json;  ///< files to write
     std::optional<std::string> csv;
     std::optional<std::string> trace;
+    std::optional<std::string> html;
+    AbOptions ab;
 };
 
 /// `options` has to outlive `command`.

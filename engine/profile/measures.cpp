@@ -72,18 +72,6 @@ struct Sums {
 /// Generation, place in the pipeline, variant: rows in this order.
 using RowKey = std::tuple<std::uint32_t, std::size_t, std::string>;
 
-/// "intersect_packet" is "intersect" in the variant "packet".
-std::pair<std::string, std::string> split_name(const std::string& name) {
-    const std::size_t underscore = name.rfind('_');
-    if (underscore != std::string::npos) {
-        const std::string variant = name.substr(underscore + 1);
-        if (variant == "packet" || variant == "stream" || variant == "scalar") {
-            return {name.substr(0, underscore), variant};
-        }
-    }
-    return {name, ""};
-}
-
 RowKey key_of(const LaunchRecord& launch) {
     auto [kernel, variant] = split_name(launch.kernel);
     const auto place = std::find(pipeline.begin(), pipeline.end(), kernel) - pipeline.begin();
@@ -224,6 +212,17 @@ void add_generation_totals(Profile& profile, const std::map<RowKey, Sums>& rows,
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> split_name(const std::string& name) {
+    const std::size_t underscore = name.rfind('_');
+    if (underscore != std::string::npos) {
+        const std::string variant = name.substr(underscore + 1);
+        if (variant == "packet" || variant == "stream" || variant == "scalar") {
+            return {name.substr(0, underscore), variant};
+        }
+    }
+    return {name, ""};
+}
 
 void add_rows(Profile& profile, const Measurement& measurement) {
     std::map<RowKey, Sums> rows = sum_launches(measurement);

@@ -1,9 +1,13 @@
 #include "engine/profile/profile_page.h"
 
 #include <cstdint>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/film/image_encode.h"
+#include "engine/film/image_format.h"
+#include "engine/film/image_io.h"
 #include "engine/profile/page_parts.h"
 
 namespace sahl {
@@ -39,9 +43,12 @@ std::string for_script(std::string_view json) {
 
 std::string pictures_json(std::span<const PagePicture> pictures) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    const std::filesystem::path name = "image.png";
+    const OutputSettings settings;
     for (const PagePicture& picture : pictures) {
-        list.push_back(
-            {{"title", picture.title}, {"source", "data:image/png;base64," + base64(picture.png)}});
+        const std::vector<unsigned char> png =
+            encode(name, picture.image, {}, encoding_of(name, settings), settings);
+        list.push_back({{"title", picture.title}, {"source", "data:image/png;base64," + base64(png)}});
     }
     return list.dump();
 }

@@ -4,14 +4,15 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "engine/film/film.h"
 
 namespace sahl {
 
 /// A picture on the page.
 struct PagePicture {
     std::string title;
-    std::vector<unsigned char> png;  ///< the file
+    Image image;  ///< linear
 };
 
 /// The page (HTML, with its style and scripts) of a profile in JSON, as docs/sahl-profile.schema.json

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/profile/measures.h"
 
 namespace sahl {
 namespace {
@@ -55,6 +56,8 @@ private:
     std::map<std::string, KernelTimes> kernels_;
     std::vector<std::string> order_;
 };
+
+double ms(std::uint64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 /// A value in a profile's file, which knows where it stands.
 class Value {
@@ -155,14 +158,18 @@ std::string name_of(const TimedRow& row) {
     return row.generation ? fmt::format("{}/{}", row.kernel, *row.generation) : row.kernel;
 }
 
-ProfileTimes times_of(const Profile& profile) {
+ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<TimelineRecord>& frames) {
     std::vector<double> wall;
-    for (const ProfileRepetition& repetition : profile.repetitions) wall.push_back(repetition.time.wall_ms);
+    for (const TimelineRecord& frame : frames) wall.push_back(ms(frame.end_ns - frame.begin_ns));
     RowTable table(std::move(wall));
-    for (const ProfileRow& row : profile.rows) {
-        table.add(row.kernel, row.generation.value_or(0), row.measures.samples_ms);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        for (const LaunchRecord& launch : frames[i].launches) {
+            std::vector<double> samples(frames.size());
+            samples[i] = ms(launch.ended_ns - launch.started_ns);
+            table.add(split_name(launch.kernel).first, launch.generation, samples);
+        }
     }
-    return {profile.environment, table.rows()};
+    return {environment, table.rows()};
 }
 
 ProfileTimes read_profile_times(const std::filesystem::path& path) {

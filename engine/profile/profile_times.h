@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/profile/profile.h"
+#include "engine/profile/timeline.h"
 
 namespace sahl {
 
@@ -27,7 +28,7 @@ struct ProfileTimes {
 };
 
 /// Variants of a kernel count as one: which of them suits a generation's rays may be what has changed.
-ProfileTimes times_of(const Profile& profile);
+ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<TimelineRecord>& frames);
 
 /// The times in a file of `sahl profile --export-json`. Throws Error(scene) naming the file and what is
 /// wrong with it: missing, no JSON, no profile, another version of the format.

@@ -111,8 +111,8 @@ TEST_CASE("completion: bash completes commands, options, files and words", "[cli
         {{"sahl", "completion", ""}, {"bash", "zsh"}},
         {{"sahl", "devices", ""}, {}},
         {{"sahl", "profile", "di"}, {"diff"}},
-        {{"sahl", "profile", "diff", "--fa"}, {"--fail-if"}},
-        {{"sahl", "profile", "--fa"}, {}},
+        {{"sahl", "profile", "diff", "--fo"}, {"--force"}},
+        {{"sahl", "profile", "--fo"}, {}},
         {{"sahl", "profile", "diff", "--color", "a"}, {"always", "auto"}},
         {{"sahl", "profile", "diff", "scene.j"}, {"scene.json"}},
     };

@@ -82,21 +82,32 @@ TEST_CASE("profile times: kernels add up over generations and variants", "[profi
         "sum_children sum_children/0 sum_children/1 sum_children/2 compact compact/0 compact/1 compact/2");
 }
 
-TEST_CASE("profile times: the same from a file and from a profile in memory", "[profile]") {
-    Profile profile;
-    profile.repetitions.resize(2);
-    profile.repetitions[0].time.wall_ms = 5;
-    profile.repetitions[1].time.wall_ms = 6;
-    ProfileMeasures measures;
-    measures.samples_ms = {1, 2};
-    profile.rows = {{"shade", "", 0, measures}, {"shade", "", 1, measures}};
-    const ProfileTimes times = times_of(profile);
-    REQUIRE(times.rows.size() == 4);
+TEST_CASE("profile times: of recorded frames", "[profile]") {
+    const auto launch = [](const char* kernel, std::uint32_t generation, std::uint64_t begin,
+                           std::uint64_t end) {
+        LaunchRecord record;
+        record.kernel = kernel;
+        record.generation = generation;
+        record.started_ns = begin;
+        record.ended_ns = end;
+        return record;
+    };
+    // Two waves: a kernel is launched twice in a generation.
+    TimelineRecord first{0, 5'000'000, {}, {}};
+    first.launches = {launch("shade", 0, 0, 1'000'000), launch("intersect_packet", 1, 1'000'000, 1'500'000),
+                      launch("shade", 0, 2'000'000, 4'000'000)};
+    TimelineRecord second{7'000'000, 13'000'000, {}, {}};
+    second.launches = {launch("shade", 0, 7'000'000, 9'000'000),
+                       launch("intersect_stream", 1, 9'000'000, 9'250'000),
+                       launch("shade", 0, 10'000'000, 12'000'000)};
+    const ProfileTimes times = times_of({}, {first, second});
+    REQUIRE(times.rows.size() == 5);
+    CHECK(name_of(times.rows[0]) == "wall");
     CHECK(times.rows[0].samples_ms == std::vector<double>{5, 6});
-    CHECK(name_of(times.rows[1]) == "shade");
-    CHECK(times.rows[1].samples_ms == std::vector<double>{2, 4});
-    CHECK(name_of(times.rows[3]) == "shade/1");
-    CHECK(times.rows[3].samples_ms == std::vector<double>{1, 2});
+    CHECK(name_of(times.rows[2]) == "shade/0");
+    CHECK(times.rows[2].samples_ms == std::vector<double>{3, 4});
+    CHECK(name_of(times.rows[4]) == "intersect/1");
+    CHECK(times.rows[4].samples_ms == std::vector<double>{0.5, 0.25});
 }
 
 TEST_CASE("profile times: files that are no profiles are refused with what is wrong and where", "[profile]") {
