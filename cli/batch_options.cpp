@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "cli/options.h"
 #include "cli/render_options.h"
 #include "engine/batch/number_ranges.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/values.h"
 #include "engine/batch/batch_job.h"
 
 namespace sahl::cli {

@@ -12,7 +12,7 @@
 
 #include "cli/batch_outcome.h"
 #include "cli/batch_setup.h"
-#include "cli/options.h"
+#include "cli/values.h"
 
 namespace sahl::cli {
 

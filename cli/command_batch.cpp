@@ -12,6 +12,7 @@
 #include "cli/batch_supervisor.h"
 #include "cli/commands.h"
 #include "cli/interruption.h"
+#include "cli/options.h"
 #include "engine/batch/expand.h"
 #include "engine/core/atomic_file.h"
 

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/interruption.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "engine/film/image_compare.h"
 #include "engine/film/image_io.h"

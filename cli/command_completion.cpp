@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/man_page.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 
 namespace sahl::cli {

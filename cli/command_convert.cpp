@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/interruption.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 
 namespace sahl::cli {

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "engine/device/device_choice.h"
 #include "engine/self_test/self_test.h"

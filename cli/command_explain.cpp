@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
 #include "cli/explain_report.h"
+#include "cli/options.h"
 #include "cli/render_settings.h"
 #include "cli/standard_output.h"
 

@@ -9,6 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/memory_report.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "engine/render/scene_info.h"
 

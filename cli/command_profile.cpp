@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/interruption.h"
+#include "cli/options.h"
 #include "cli/profile_ab.h"
 #include "cli/profile_options.h"
 #include "cli/profile_setup.h"

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "cli/profile_diff_report.h"
 #include "engine/core/log.h"
 

@@ -10,6 +10,7 @@
 #include "cli/driver_failure.h"
 #include "cli/interruption.h"
 #include "cli/memory_report.h"
+#include "cli/options.h"
 #include "cli/output_name.h"
 #include "cli/render_files.h"
 #include "cli/render_options.h"

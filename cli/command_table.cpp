@@ -1,5 +1,7 @@
 #include "cli/command_table.h"
 
+#include "cli/options.h"
+
 namespace sahl::cli {
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {

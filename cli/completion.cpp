@@ -1,6 +1,7 @@
 #include "cli/completion.h"
 
 #include "cli/command_table.h"
+#include "cli/options.h"
 
 namespace sahl::cli {
 

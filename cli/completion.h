@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/options.h"
+#include "cli/values.h"
 
 namespace sahl::cli {
 

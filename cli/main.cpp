@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
 #include "cli/interruption.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "engine/core/log.h"
 #include "engine/core/nearest.h"

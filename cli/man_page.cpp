@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli/command_table.h"
+#include "cli/options.h"
 
 namespace sahl::cli {
 

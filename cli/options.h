@@ -1,35 +1,16 @@
-// Values of the command line: each kind is read and checked here, once, with a message that says
-// what is allowed.
+// Options of several commands, and the ways of adding one. Files that add none include values.h alone: CLI11
+// is most of what they would compile.
 #pragma once
 
-#include <charconv>
-#include <cstdint>
-#include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "engine/sahl.h"
+#include "cli/values.h"
 
 namespace sahl::cli {
-
-constexpr int most_samples = 16384;  ///< a pixel; more could overflow the film's fixed point
-
-enum class ColorMode { automatic, always, never };
-
-/// Options of all commands (those of the device: of the commands that use one). They may stand
-/// before the command too.
-struct CommonOptions {
-    DeviceOptions device;
-    bool quiet = false;
-    bool verbose = false;
-    bool json = false;
-    ColorMode color = ColorMode::automatic;
-};
 
 void add_device_options(CLI::App& app, CommonOptions& options);
 void add_common_options(CLI::App& app, CommonOptions& options);
@@ -69,46 +50,6 @@ struct OptionWords {
 const OptionWords& words_of(const CLI::Option& option);
 void set_words(const CLI::Option& option, OptionWords words);
 
-/// "a, b or c".
-std::string either(const std::vector<std::string>& words);
-
-/// Error(usage): "OPTION 'TEXT': WANTED is wanted".
-[[noreturn]] void refuse(std::string_view option, std::string_view text, std::string_view wanted);
-
-/// A decimal whole number from `least` to `most`, and nothing else.
-template <class T>
-T read_whole(std::string_view option, std::string_view text, T least, T most) {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) {
-        refuse(option, text, fmt::format("a whole number from {} to {}", least, most));
-    }
-    return value;
-}
-
-/// A finite decimal number from `least` to `most`.
-double read_number(std::string_view option, std::string_view text, double least, double most);
-
-/// The words for the values of a choice.
-template <class T>
-using Choices = std::vector<std::pair<std::string, T>>;
-
-template <class T>
-std::vector<std::string> words_of(const Choices<T>& choices) {
-    std::vector<std::string> words;
-    for (const auto& choice : choices) words.push_back(choice.first);
-    return words;
-}
-
-/// One of a few words.
-template <class T>
-T read_choice(std::string_view option, std::string_view text, const Choices<T>& choices) {
-    for (const auto& [word, value] : choices) {
-        if (text == word) return value;
-    }
-    refuse(option, text, fmt::format("one of {}", fmt::join(words_of(choices), ", ")));
-}
-
 /// Adds an option whose value is one of a few words; `help` goes on after "a, b or c ".
 template <class T, class Target>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::string& value_name, Target& target,
@@ -120,23 +61,5 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, const std::strin
     set_words(*option, {words_of(choices)});
     return option;
 }
-
-/// Bytes: "4096", "64K", "64M", "8G", "1T", in powers of 1024.
-std::uint64_t read_bytes(std::string_view option, std::string_view text);
-
-/// "640x480".
-Resolution read_size(std::string_view option, std::string_view text);
-
-/// "X0,Y0,X1,Y1" with 0 <= X0 < X1 and 0 <= Y0 < Y1.
-Crop read_crop(std::string_view option, std::string_view text);
-
-/// "A..B" with 0 <= A < B.
-SampleRange read_samples(std::string_view option, std::string_view text);
-
-/// "4" or "0,1,2,3": each depth once.
-std::vector<int> read_depths(std::string_view option, std::string_view text);
-
-/// The pieces between `separator`s; one more than there are separators.
-std::vector<std::string_view> split(std::string_view text, char separator);
 
 }  // namespace sahl::cli

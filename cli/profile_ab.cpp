@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "cli/command_table.h"
+#include "cli/options.h"
 #include "cli/profile_diff_report.h"
 #include "cli/profile_setup.h"
 #include "engine/profile/measure_in_turn.h"

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "engine/core/log.h"
 

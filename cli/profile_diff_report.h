@@ -6,7 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "cli/options.h"
+#include "cli/values.h"
 
 namespace sahl::cli {
 

@@ -1,5 +1,7 @@
 #include "cli/profile_options.h"
 
+#include "cli/options.h"
+
 namespace sahl::cli {
 
 namespace {

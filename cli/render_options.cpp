@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "cli/options.h"
+
 namespace sahl::cli {
 
 namespace {

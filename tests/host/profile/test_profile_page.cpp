@@ -26,14 +26,21 @@ std::string part_of(const std::string& dom, const std::string& id) {
     return dom.substr(begin, dom.find(" id=\"", begin + 4) - begin);
 }
 
+/// A match and its groups. Copies: the text that was searched may be a temporary.
+using Groups = std::vector<std::string>;
+
 /// The pattern's groups, for each place where it matches.
-std::vector<std::smatch> all_of(const std::string& text, const std::string& pattern) {
+std::vector<Groups> all_of(const std::string& text, const std::string& pattern) {
     const std::regex regex(pattern);
-    return {std::sregex_iterator(text.begin(), text.end(), regex), std::sregex_iterator()};
+    std::vector<Groups> all;
+    for (std::sregex_iterator match(text.begin(), text.end(), regex); match != std::sregex_iterator();
+         ++match)
+        all.emplace_back(match->begin(), match->end());
+    return all;
 }
 
 /// A cell says `value`: all of it in data-value, rounded to four digits in what is shown.
-void check_cell(const std::smatch& cell, const Json& value) {
+void check_cell(const Groups& cell, const Json& value) {
     const std::string exact = cell[1];
     std::string shown = cell[2];
     INFO(exact << " shown as " << shown << ", in the profile " << value);
@@ -60,7 +67,7 @@ void check_table(const BrowsedPage& page, const Json& profile, const std::string
     REQUIRE(headings.size() == columns);
     REQUIRE(cells.size() == columns * rows.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        check_cell(cells[i], rows[i / columns].at(headings[i % columns][1].str()));
+        check_cell(cells[i], rows[i / columns].at(headings[i % columns][1]));
     }
 }
 
@@ -111,10 +118,10 @@ TEST_CASE("profile page: its charts are of the profile's figures, in a browser",
     for (const Json& row : profile["kernel_totals"]) totals[row["kernel"]] += row["ms_median"].get<double>();
     const auto kernels = all_of(part_of(page.dom, "frame"), "data-kernel=\"([a-z_]+)\" data-ms=\"([^\"]+)\"");
     REQUIRE(kernels.size() == totals.size());
-    for (const std::smatch& bar : kernels) CHECK(std::stod(bar[2]) == Approx(totals.at(bar[1])));
+    for (const Groups& bar : kernels) CHECK(std::stod(bar[2]) == Approx(totals.at(bar[1])));
     const auto steps = all_of(part_of(page.dom, "frame"), "data-step=\"([a-z_]*)\" data-ms=\"([^\"]+)\"");
     REQUIRE(steps.size() == 3);
-    CHECK(steps[2][1].str().empty());
+    CHECK(steps[2][1].empty());
     CHECK(std::stod(steps[2][2]) == profile["unattributed_ms"].get<double>());
 
     const Json& rows = profile["rows"];
@@ -126,18 +133,18 @@ TEST_CASE("profile page: its charts are of the profile's figures, in a browser",
     const std::string place = "data-kernel=\"([a-z_]+)\" data-generation=\"([0-9]+)\" ";
     const auto waterfall = all_of(part_of(page.dom, "waterfall"), place + "data-ms=\"([^\"]+)\"");
     REQUIRE(waterfall.size() == rows.size());
-    for (const std::smatch& bar : waterfall) {
+    for (const Groups& bar : waterfall) {
         CHECK(std::stod(bar[3]) == find_row(bar[1], bar[2])["ms_median"].get<double>());
     }
     const auto rays = all_of(part_of(page.dom, "rays"), place + "data-rays=\"([0-9]+)\"");
     REQUIRE(rays.size() == 6);
-    for (const std::smatch& bar : rays) {
+    for (const Groups& bar : rays) {
         CHECK(std::stoull(bar[3]) == find_row(bar[1], bar[2])["rays_in"].get<std::uint64_t>());
     }
     const auto roofline =
         all_of(part_of(page.dom, "roofline"), place + "data-intensity=\"([^\"]+)\" data-gflop=\"([^\"]+)\"");
     REQUIRE(roofline.size() == rows.size());
-    for (const std::smatch& circle : roofline) {
+    for (const Groups& circle : roofline) {
         const Json row = find_row(circle[1], circle[2]);
         CHECK(std::stod(circle[3]) ==
               Approx(row["flop_per_ray"].get<double>() / row["bytes_per_ray"].get<double>()));
@@ -169,7 +176,7 @@ TEST_CASE("profile page: a heading sorts its table, what is not known last", "[p
         CHECK(std::is_sorted(values.begin(), values.end()));
     }
     CHECK(values.front() != values.back());
-    CHECK(cells[cells.size() - 24 + 5][1].str().empty());
+    CHECK(cells[cells.size() - 24 + 5][1].empty());
 }
 
 TEST_CASE("profile page: it fits a phone, and is readable in the light and in the dark", "[profile]") {
