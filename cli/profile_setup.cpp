@@ -1,9 +1,12 @@
 #include "cli/profile_setup.h"
 
+#include <fmt/format.h>
+
 #include "cli/driver_failure.h"
 #include "cli/interruption.h"
 #include "cli/render_settings.h"
 #include "engine/profile/environment.h"
+#include "engine/scene/scene_hash.h"
 
 namespace sahl::cli {
 
@@ -34,8 +37,9 @@ void describe_job(const ProfileOptions& options, const FrameJob& job, const Scen
                   ProfileEnvironment& environment) {
     const RenderSettings& settings = job.settings;
     environment.scene = options.render.scene;
-    environment.scene_hash = scene_hash(scene, settings.camera);
-    environment.camera = scene.cameras[settings.camera].name;
+    const Camera& camera = scene.cameras[settings.camera];
+    environment.scene_hash = fmt::format("{:016x}", hash_with_camera(scene, camera));
+    environment.camera = camera.name;
     environment.width = settings.resolution.width;
     environment.height = settings.resolution.height;
     if (const auto& crop = settings.crop) environment.crop = {{crop->x0, crop->y0, crop->x1, crop->y1}};

@@ -7,14 +7,13 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 
 namespace sahl {
 namespace {
@@ -33,15 +32,8 @@ fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.
                             path.string(), std::strerror(errno)));
 }
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo).
-std::uint64_t hash_of(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const char byte : text) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-    return hash;
-}
-
 /// The byte that stands for an image; two images of one byte would only wait for each other.
-off_t byte_of(const std::string& name) { return static_cast<off_t>(hash_of(name) >> 2U) + 1; }
+off_t byte_of(const std::string& name) { return static_cast<off_t>(fnv1a(name) >> 2U) + 1; }
 
 enum class Lock { taken, busy, none };
 

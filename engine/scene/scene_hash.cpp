@@ -88,14 +88,25 @@ void add_shapes(SceneHasher& h, const Scene& scene) {
     h.add_all(scene.polygon_vertices);
 }
 
+void add_scene(SceneHasher& h, const Scene& scene) {
+    h.add_each(scene.background, scene.ambient);
+    add_materials(h, scene);
+    add_structure(h, scene);
+    add_shapes(h, scene);
+}
+
 }  // namespace
 
 std::uint64_t hash_without_cameras(const Scene& scene) {
     SceneHasher hasher;
-    hasher.add_each(scene.background, scene.ambient);
-    add_materials(hasher, scene);
-    add_structure(hasher, scene);
-    add_shapes(hasher, scene);
+    add_scene(hasher, scene);
+    return hasher.hash();
+}
+
+std::uint64_t hash_with_camera(const Scene& scene, const Camera& camera) {
+    SceneHasher hasher;
+    add_scene(hasher, scene);
+    hasher.add_each(camera.eye, camera.look_at, camera.up, camera.fov_y);
     return hasher.hash();
 }
 
