@@ -49,7 +49,7 @@ ExitCode convert(const ConvertOptions& options, const CommonOptions& common) {
                      {"cameras", scene.cameras.size()},
                      {"groups", scene.groups.size()}});
     }
-    if (!common.quiet) fmt::print(stderr, "wrote {}\n", options.output);
+    if (!common.quiet) print_message(fmt::format("wrote {}\n", options.output));
     return ExitCode::ok;
 }
 

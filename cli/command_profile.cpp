@@ -66,7 +66,7 @@ Measured take_measurement(const ProfileOptions& options, const CommonOptions& co
 void write_text(const std::optional<std::string>& file, const std::string& text,
                 const CommonOptions& common) {
     write_file(*file, std::as_bytes(std::span(text)));
-    if (!common.quiet) fmt::print(stderr, "wrote {}\n", *file);
+    if (!common.quiet) print_message(fmt::format("wrote {}\n", *file));
 }
 
 void write_reports(const ProfileOptions& options, const Profile& profile, const Measured& measured,

@@ -36,8 +36,8 @@ ExitCode warm(const WarmOptions& options, const CommonOptions& common) {
                      {"kernels", report.kernels.size()},
                      {"compiled", compiled}});
     } else if (!common.quiet) {
-        fmt::print(stderr, "{}: the kernels are ready and have passed their test, {} compiled now\n",
-                   device.info().name, compiled);
+        print_message(fmt::format("{}: the kernels are ready and have passed their test, {} compiled now\n",
+                                  device.info().name, compiled));
     }
     return ExitCode::ok;
 }

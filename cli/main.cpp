@@ -203,6 +203,7 @@ int guarded_run(int argc, char** argv) {
 }  // namespace sahl::cli
 
 int main(int argc, char** argv) {
+    sahl::cli::reserve_standard_streams();
     // A reader that went away and a file size limit are failed writes with a message, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);

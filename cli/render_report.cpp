@@ -114,9 +114,9 @@ void say_image(const Rendered& image) {
     const GenerationCounts rays = total_rays(image.statistics);
     const double seconds = image.statistics.seconds;
     const double rate = seconds > 0 ? static_cast<double>(rays.rays + rays.shadow_rays) / seconds : 0;
-    fmt::print(stderr, "wrote {}  {}x{}, depth {}, {} spp, {:.2f} s, {}rays/s\n",
-               fmt::join(paths_of(image.outputs), ", "), image.size.width, image.size.height,
-               image.settings.depth, image.settings.spp, seconds, with_prefix(rate));
+    print_message(fmt::format("wrote {}  {}x{}, depth {}, {} spp, {:.2f} s, {}rays/s\n",
+                              fmt::join(paths_of(image.outputs), ", "), image.size.width, image.size.height,
+                              image.settings.depth, image.settings.spp, seconds, with_prefix(rate)));
 }
 
 void warn_of_lost_light(const Rendered& image) {

@@ -1,4 +1,5 @@
-// Results on standard output. What cannot be written there is an error, not a short result.
+// Results on standard output, where what cannot be written is an error and not a short result; and messages
+// on standard error.
 #pragma once
 
 #include <string_view>
@@ -12,5 +13,12 @@ void print(std::string_view text);
 
 /// One event of the `--json` stream: `event` on a line of its own.
 void print_event(const nlohmann::ordered_json& event);
+
+/// Writes `text` to standard error, as far as somebody reads it: a terminal that was closed ends no work.
+void print_message(std::string_view text);
+
+/// Lets files that the process opens never take the place of a standard stream that it was started without,
+/// where they would be written over.
+void reserve_standard_streams();
 
 }  // namespace sahl::cli
