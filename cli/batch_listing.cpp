@@ -104,15 +104,15 @@ ExitCode print_batch_plan(BatchSetup& setup, const std::vector<JobOutcome>& outc
         ++jobs.count;
     }
     if (scenes.empty()) return ExitCode::ok;
-    Device device(setup.device);
+    Device device(setup.worker.device);
     take_driver_failures();
-    device.memory().set_limit(setup.max_memory.value_or(physical_memory_bytes()));
-    BatchScene scene(device, setup);
+    device.memory().set_limit(setup.worker.max_memory.value_or(physical_memory_bytes()));
+    BatchScene scene(device);
     ExitCode code = ExitCode::ok;
     double all_seconds = 0;
     for (const auto& [path, jobs] : scenes) {
         try {
-            const PreparedJob prepared = scene.prepare(*jobs.first);
+            const PreparedJob prepared = scene.prepare(*jobs.first, setup.content_of(*jobs.first));
             const auto samples = static_cast<double>(pixel_count(prepared.settings.resolution)) *
                                  prepared.settings.spp * static_cast<double>(jobs.count);
             const double seconds = samples * seconds_per_sample(device, scene, prepared);

@@ -5,15 +5,25 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
+#include <cstring>
 #include <string_view>
+#include <vector>
 
 namespace sahl::cli {
 
+namespace {
+
+using Size = std::uint32_t;  // both ends are the same program
+
+}  // namespace
+
 bool MessageSocket::send(const nlohmann::json& message) {
-    // Paths in error messages may be no UTF-8, which JSON has to be.
-    constexpr auto replace = nlohmann::json::error_handler_t::replace;
-    const std::string line = message.dump(-1, ' ', false, replace) + "\n";
-    std::string_view rest = line;
+    const std::vector<std::uint8_t> bytes = nlohmann::json::to_msgpack(message);
+    const auto size = static_cast<Size>(bytes.size());
+    std::string text(reinterpret_cast<const char*>(&size), sizeof(size));
+    text.append(bytes.begin(), bytes.end());
+    std::string_view rest = text;
     const std::lock_guard lock(writing_);
     while (!rest.empty()) {
         const ssize_t count = ::send(file_, rest.data(), rest.size(), MSG_NOSIGNAL);
@@ -25,10 +35,14 @@ bool MessageSocket::send(const nlohmann::json& message) {
 }
 
 std::optional<nlohmann::json> MessageSocket::next() {
-    const std::size_t end = received_.find('\n');
-    if (end == std::string::npos) return std::nullopt;
-    nlohmann::json message = nlohmann::json::parse(received_.substr(0, end));
-    received_.erase(0, end + 1);
+    Size size = 0;
+    if (received_.size() < sizeof(size)) return std::nullopt;
+    std::memcpy(&size, received_.data(), sizeof(size));
+    const std::size_t end = sizeof(size) + size;
+    if (received_.size() < end) return std::nullopt;
+    const auto text = std::string_view(received_).substr(sizeof(size), size);
+    nlohmann::json message = nlohmann::json::from_msgpack(text);
+    received_.erase(0, end);
     return message;
 }
 

@@ -1,5 +1,5 @@
-// What the supervisor of a batch and its worker say to each other: a line of JSON for each message, over a
-// socket.
+// What the supervisor of a batch and its worker say to each other over a socket: for each message its size in
+// bytes, four of them, and JSON as MessagePack, where texts may be no UTF-8.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace sahl::cli {
 
-/// One end of the socket. Lines are written whole, from any thread; read by one thread.
+/// One end of the socket. Messages are written whole, from any thread; read by one thread.
 class MessageSocket {
 public:
     explicit MessageSocket(int file) : file_(file) {}

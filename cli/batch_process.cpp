@@ -12,11 +12,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
-#include "cli/batch_worker.h"
+#include "cli/batch_order.h"
 
 namespace sahl::cli {
 
@@ -35,36 +35,46 @@ std::array<int, 2> make_sockets() {
     return ends;
 }
 
-[[noreturn]] void be_worker(BatchSetup& setup, pid_t supervisor, int socket, int log) {
+constexpr const char* worker_name = "sahl-worker";  // in lists of processes too
+
+/// Async-signal-safe: other threads may have been in the midst of anything.
+[[noreturn]] void become_worker(pid_t supervisor, int log, char** arguments) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != supervisor) _exit(0);  // gone before it was heard of
-    const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    ::dup2(nothing, STDIN_FILENO);
+    ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), STDIN_FILENO);
     ::dup2(log, STDOUT_FILENO);
     ::dup2(log, STDERR_FILENO);
     const rlimit no_core_file{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core_file);
     // When the machine runs out of memory it is this process that goes, not the one that can say so.
-    std::ofstream("/proc/self/oom_score_adj") << 1000;
-    run_batch_worker(setup, socket);
+    const int score = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+    const bool scored = ::write(score, "1000", 4) == 4;
+    static_cast<void>(scored);  // where that is not allowed, chance decides
+    ::execv("/proc/self/exe", arguments);
+    constexpr std::string_view message = "sahl: error: /proc/self/exe cannot be started; mount /proc\n";
+    static_cast<void>(::write(STDERR_FILENO, message.data(), message.size()) < 0);
+    _exit(127);
 }
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(BatchSetup& setup) : socket_(-1), log_(-1) {
+WorkerProcess::WorkerProcess(const WorkerSettings& settings) : socket_(-1), log_(-1) {
     const std::array<int, 2> ends = make_sockets();
     // Never full, never blocking, gone with the processes; appending, for it is emptied in between.
     log_ = ::memfd_create("sahl-worker-log", MFD_CLOEXEC);
     if (log_ < 0 || ::fcntl(log_, F_SETFL, O_APPEND) != 0) fail("memfd_create");
     const pid_t supervisor = ::getpid();
+    const int inherited = ::dup(ends[1]);  // without close-on-exec
+    std::string name = worker_name;
+    std::string socket = std::to_string(inherited);
+    std::array<char*, 3> arguments{name.data(), socket.data(), nullptr};
     id_ = ::fork();
-    if (id_ < 0) fail("fork");
-    if (id_ == 0) {
-        ::close(ends[0]);
-        be_worker(setup, supervisor, ends[1], log_);
-    }
+    if (id_ == 0) become_worker(supervisor, log_, arguments.data());
+    ::close(inherited);
     ::close(ends[1]);
     socket_.reset(ends[0]);
+    if (id_ < 0) fail("fork");
+    socket_.send(message_of(settings));
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -96,6 +106,13 @@ std::string WorkerProcess::wait() {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) return "was killed, perhaps for want of memory";
     if (WIFSIGNALED(status)) return fmt::format("crashed ({})", strsignal(WTERMSIG(status)));
     return fmt::format("ended with status {}", WEXITSTATUS(status));
+}
+
+std::optional<int> worker_socket(int argc, char** argv) {
+    if (argc != 2 || argv[0] != std::string_view(worker_name)) return std::nullopt;
+    const int socket = std::stoi(argv[1]);
+    ::fcntl(socket, F_SETFD, FD_CLOEXEC);  // a compiler that it starts may live longer
+    return socket;
 }
 
 }  // namespace sahl::cli

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <optional>
 #include <string>
 
 #include "cli/batch_messages.h"
@@ -10,13 +11,13 @@
 
 namespace sahl::cli {
 
-/// Runs run_batch_worker in a process of its own, which ends with this one whatever ends it. That is a copy
-/// of this process (fork), which therefore must have used neither OpenCL nor threads that do work: so the
-/// worker knows all jobs, and begins at once.
+/// This program once more (fork and exec) with run_batch_worker, which ends with this one whatever ends it. A
+/// mere copy (fork) would be quicker, but without the threads that libraries start before main(), and with
+/// whatever they held.
 class WorkerProcess {
 public:
     /// Throws Error(memory) if there is no room for another process.
-    explicit WorkerProcess(BatchSetup& setup);
+    explicit WorkerProcess(const WorkerSettings& settings);
     /// Kills it.
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
@@ -35,5 +36,8 @@ private:
     MessageSocket socket_;
     int log_;
 };
+
+/// The socket that the arguments of a worker's process name; nothing for any other process.
+std::optional<int> worker_socket(int argc, char** argv);
 
 }  // namespace sahl::cli

@@ -1,11 +1,13 @@
 #include "cli/batch_report.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,6 +36,21 @@ std::string bar(double share, std::size_t cells) {
     return "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "]";
 }
 
+/// Of the terminal, less one: a line that fills it may wrap.
+std::size_t bar_columns() {
+    winsize size{};
+    const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    return known ? size.ws_col - 1U : 79;
+}
+
+/// The end of a name, where it differs from others.
+std::string shortened(const std::string& name, std::size_t columns) {
+    if (name.size() <= columns) return name;
+    std::size_t start = name.size() - (columns > 3 ? columns - 3 : 0);
+    while (start < name.size() && (static_cast<unsigned char>(name[start]) & 0xc0U) == 0x80U) ++start;
+    return "..." + name.substr(start);
+}
+
 }  // namespace
 
 BatchReport::BatchReport(const BatchSetup& setup, const CommonOptions& common,
@@ -48,14 +65,19 @@ std::string BatchReport::name_of(std::size_t job) const {
     return fmt::format("{}", fmt::join(paths_of(setup_.jobs[job]), ", "));
 }
 
-void BatchReport::emit(const Json& event) const {
-    if (has_events_) print_event(event);
+void BatchReport::emit(const Json& event) {
+    if (!has_events_ || lost_events_) return;
+    try {
+        print_event(event);
+    } catch (const Error& error) {
+        lost_events_ = error;
+    }
 }
 
 void BatchReport::say(const std::string& line) {
     if (is_quiet_) return;
     clear();
-    fmt::print(stderr, "{}\n", line);
+    print_message(line + "\n");
     draw();
 }
 
@@ -77,33 +99,38 @@ std::optional<double> BatchReport::seconds_left() const {
     return elapsed / done * std::max(left, 0.0);
 }
 
-std::string BatchReport::status_line() const {
+std::string BatchReport::status_line(std::size_t columns) const {
     const std::size_t all = setup_.jobs.size();
     const double whole = (static_cast<double>(finished_) + share_of_current()) / static_cast<double>(all);
     std::string line = fmt::format("{} {}/{}", bar(whole, 16), finished_, all);
     if (failed_ > 0) line += fmt::format(", {} failed", failed_);
+    std::string end;
+    if (current_)
+        end +=
+            fmt::format(" {} {:3.0f} %", bar(share_of_current(), 10), std::floor(100 * share_of_current()));
+    if (seconds_ > 0) end += fmt::format("  {}rays/s", with_prefix(rays_per_second()));
+    if (const auto left = seconds_left()) end += "  ETA " + clock_time(*left);
     if (current_) {
-        line += fmt::format("  {} {} {:3.0f} %", setup_.jobs[*current_].outputs.front().string(),
-                            bar(share_of_current(), 10), std::floor(100 * share_of_current()));
+        const std::size_t taken = line.size() + 2 + end.size();
+        line += "  " + shortened(setup_.jobs[*current_].outputs.front().string(),
+                                 columns > taken ? columns - taken : 0);
     }
-    if (seconds_ > 0) line += fmt::format("  {}rays/s", with_prefix(rays_per_second()));
-    if (const auto left = seconds_left()) line += "  ETA " + clock_time(*left);
-    return line;
+    return line + end;
 }
 
 void BatchReport::draw() {
     if (!has_bar_) return;
     drawn_ = Clock::now();
-    std::string line = status_line();
+    std::string line = status_line(bar_columns());
     const std::size_t width = line.size();
     if (width < bar_width_) line.append(bar_width_ - width, ' ');
-    fmt::print(stderr, "\r{}", line);
+    print_message("\r" + line);
     bar_width_ = width;
 }
 
 void BatchReport::clear() {
     if (bar_width_ == 0) return;
-    fmt::print(stderr, "\r{}\r", std::string(bar_width_, ' '));
+    print_message("\r" + std::string(bar_width_, ' ') + "\r");
     bar_width_ = 0;
 }
 
@@ -116,7 +143,9 @@ void BatchReport::begin(const std::vector<JobOutcome>& outcomes) {
           {"jobs", outcomes.size()},
           {"finished", finished_before_},
           {"to_render", outcomes.size() - finished_before_}});
-    say(fmt::format("{} images, {} of them finished", outcomes.size(), finished_before_));
+    if (lost_events_) throw Error(*lost_events_);
+    say(fmt::format("{} image{}, {} finished", outcomes.size(), outcomes.size() == 1 ? "" : "s",
+                    finished_before_));
     write_status("running");
 }
 
@@ -209,15 +238,15 @@ void BatchReport::failed(std::size_t job, const JobOutcome& outcome) {
 void BatchReport::worker_said(const std::string& text) {
     if (text.empty() || is_quiet_) return;
     clear();
-    fmt::print(stderr, "{}", text);
+    print_message(text);
 }
 
-void BatchReport::tick(const std::vector<JobOutcome>& /*outcomes*/) {
+void BatchReport::tick() {
     const auto now = Clock::now();
     if (has_bar_ && (!drawn_ || now - *drawn_ >= between_bars)) draw();
     if (!has_bar_ && !is_quiet_ && now - drawn_.value_or(began_) >= between_lines) {
         drawn_ = now;
-        fmt::print(stderr, "{}\n", status_line());
+        print_message(status_line(std::numeric_limits<std::size_t>::max()) + "\n");
     }
     if (!status_written_ || now - *status_written_ >= between_status_files) write_status("running");
 }

@@ -21,7 +21,7 @@ public:
     BatchReport(const BatchSetup& setup, const CommonOptions& common,
                 std::optional<std::filesystem::path> status_file);
 
-    /// The first event, and how much there is to do.
+    /// The first event, and how much there is to do. Throws Error(output) if events cannot be written.
     void begin(const std::vector<JobOutcome>& outcomes);
     void started(std::size_t job, const JobOutcome& outcome);
     void resumed(std::size_t job, std::uint64_t done, std::uint64_t total);
@@ -34,10 +34,12 @@ public:
     void failed(std::size_t job, const JobOutcome& outcome);
     /// Lines that the worker wrote.
     void worker_said(const std::string& text);
-    /// Called now and then, with what has become of all jobs.
-    void tick(const std::vector<JobOutcome>& outcomes);
+    /// Called now and then.
+    void tick();
     /// The last event and line.
     void end(const std::vector<JobOutcome>& outcomes, const BatchEnd& end);
+    /// Why events were lost, if they were: that ends no batch.
+    const std::optional<Error>& lost_events() const { return lost_events_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -46,17 +48,19 @@ private:
     void say(const std::string& line);
     void draw();
     void clear();
-    std::string status_line() const;
+    /// In `columns`, if the file's name can be shortened to that.
+    std::string status_line(std::size_t columns) const;
     double rays_per_second() const;
     /// Seconds that the rest takes, if it goes on as so far.
     std::optional<double> seconds_left() const;
     double share_of_current() const;
-    void emit(const nlohmann::ordered_json& event) const;
+    void emit(const nlohmann::ordered_json& event);
     void write_status(const char* state);
 
     const BatchSetup& setup_;
     bool is_quiet_;
     bool has_events_;
+    std::optional<Error> lost_events_{};
     bool has_bar_;
     std::optional<std::filesystem::path> status_file_;
     Clock::time_point began_ = Clock::now();

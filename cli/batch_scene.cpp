@@ -57,8 +57,7 @@ MemoryRequest BatchScene::request_of(const BatchJob& job, const RenderSettings& 
     return request;
 }
 
-bool BatchScene::load(const BatchJob& job, const Key& key) {
-    const SceneContent& content = setup_.content_of(job);
+bool BatchScene::load(const BatchJob& job, const SceneContent& content, const Key& key) {
     // Before and after: what is loaded is what the record speaks of.
     check_unchanged(job, content);
     Scene scene = load_scene(job.scene, {job.parameters, job.asset_root});
@@ -84,11 +83,11 @@ bool BatchScene::load(const BatchJob& job, const Key& key) {
     return !is_same;
 }
 
-PreparedJob BatchScene::prepare(const BatchJob& job) {
+PreparedJob BatchScene::prepare(const BatchJob& job, const SceneContent& content) {
     const Key key{job.scene, job.asset_root, job.parameters,
                   job.settings.build_quality.value_or(BuildQuality::high)};
     const bool loaded = key_ != key;
-    const bool built = loaded && load(job, key);
+    const bool built = loaded && load(job, content, key);
     PreparedJob prepared{settings_of(job, outline_), {}, {}, loaded, built};
     const Camera camera = find_camera(job, outline_);
     prepared.camera = camera.name;

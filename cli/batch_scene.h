@@ -21,11 +21,11 @@ struct PreparedJob {
 /// another one. Kernels are compiled once.
 class BatchScene {
 public:
-    BatchScene(Device& device, BatchSetup& setup) : device_(device), setup_(setup) {}
+    explicit BatchScene(Device& device) : device_(device) {}
 
     /// Makes `job`'s scene, camera and memory plan ready. Throws Error as the loaders and the renderer, and
-    /// Error(scene) when a file is not what it was when the batch began.
-    PreparedJob prepare(const BatchJob& job);
+    /// Error(scene) when a file is not what it was when `content` was taken.
+    PreparedJob prepare(const BatchJob& job, const SceneContent& content);
     Renderer& renderer() { return *renderer_; }
 
 private:
@@ -37,11 +37,10 @@ private:
         bool operator==(const Key&) const = default;
     };
     /// Whether anything had to be built.
-    bool load(const BatchJob& job, const Key& key);
+    bool load(const BatchJob& job, const SceneContent& content, const Key& key);
     MemoryRequest request_of(const BatchJob& job, const RenderSettings& settings);
 
     Device& device_;
-    BatchSetup& setup_;
     std::unique_ptr<Renderer> renderer_{};
     std::optional<Key> key_{};  ///< of what `renderer_` has; none: nothing
     std::uint64_t hash_ = 0;    ///< of it, see hash_without_cameras

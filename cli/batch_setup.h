@@ -1,4 +1,4 @@
-// What supervisor and worker of a batch both know.
+// What a batch is to do, and how.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,25 @@
 #include "engine/batch/finished.h"
 #include "engine/batch/job_record.h"
 #include "engine/batch/scene_content.h"
+#include "engine/core/log.h"
 #include "engine/sahl.h"
 
 namespace sahl::cli {
 
-struct BatchSetup {
-    std::vector<BatchJob> jobs;
-    SceneContents contents{};
-    EngineIdentity engine = engine_identity();
+/// What a worker needs to know beside its jobs.
+struct WorkerSettings {
     DeviceOptions device{};
     std::optional<std::uint64_t> max_memory{};
     double checkpoint_seconds = 60;  ///< 0: no checkpoints
     bool force = false;
+    EngineIdentity engine{};
+    LogLevel log_level = LogLevel::normal;
+};
+
+struct BatchSetup {
+    std::vector<BatchJob> jobs{};
+    SceneContents contents{};
+    WorkerSettings worker{};
 
     const SceneContent& content_of(const BatchJob& job) { return contents.of(job.scene, job.parameters); }
 };

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/batch_order.h"
 #include "cli/batch_process.h"
 #include "cli/interruption.h"
 #include "engine/core/atomic_file.h"
@@ -29,6 +30,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int most_attempts = 2;
 /// A full disk or a missing driver would fail the whole night's jobs one by one.
 constexpr int most_failures_in_a_row = 3;
+constexpr int milliseconds_of_waiting = 500;
+constexpr std::chrono::seconds seconds_of_pause{5};  ///< longer than waiting takes on a busy machine
 constexpr double seconds_to_stop = 30;  ///< for a worker that is told to; a checkpoint may be gigabytes
 
 /// Becomes readable when the first SIGINT or SIGTERM comes.
@@ -91,20 +94,29 @@ private:
         const std::size_t job = from.front();
         const bool alone = outcomes_[job].attempts > 0;
         if (!writing_.empty() && (alone || is_alone_ || wait)) return;
-        if (!worker_) worker_ = std::make_unique<WorkerProcess>(setup_);
+        if (!worker_) {
+            worker_ = std::make_unique<WorkerProcess>(setup_.worker);
+            told_ = nullptr;
+        }
         is_alone_ = alone;
         from.pop_front();
         rendering_ = job;
         is_started_ = false;
         heard_ = Clock::now();
-        worker_->socket().send({{"job", job}, {"wait", wait}});  // if that fails, its end is seen
+        const SceneContent& content = setup_.content_of(setup_.jobs[job]);
+        const bool is_new = std::exchange(told_, &content) != &content;
+        // If that fails, its end is seen.
+        worker_->socket().send(message_of(job, wait, setup_.jobs[job], is_new ? &content : nullptr));
     }
 
     void listen() {
         if (!worker_) return;
         std::array<pollfd, 2> files{pollfd{worker_->socket().file(), POLLIN, 0},
                                     pollfd{stopping_ ? -1 : stop_event_.file(), POLLIN, 0}};
-        ::poll(files.data(), files.size(), 500);
+        const Clock::time_point asked = Clock::now();
+        ::poll(files.data(), files.size(), milliseconds_of_waiting);
+        // Stopped (Ctrl-Z), and the worker with it: that is no silence.
+        if (Clock::now() - asked > seconds_of_pause) heard_ = Clock::now();
         if (files[1].revents != 0) stop();
         if (files[0].revents != 0) {
             if (!worker_->socket().receive()) return worker_ended();
@@ -117,7 +129,7 @@ private:
             if (!worker_) return;
             pass_on_warnings();
         }
-        report_.tick(outcomes_);
+        report_.tick();
         const double silent = std::chrono::duration<double>(Clock::now() - heard_).count();
         // Who waits for another process's claim is silent for good reason.
         const bool works = is_started_ || !writing_.empty();
@@ -283,6 +295,7 @@ private:
     BatchReport& report_;
     StopEvent stop_event_{};
     std::unique_ptr<WorkerProcess> worker_{};
+    const SceneContent* told_ = nullptr;  ///< the content that the worker was told of last
     std::deque<std::size_t> waiting_{};
     std::deque<std::size_t> taken_{};  ///< by other processes
     std::optional<std::size_t> rendering_{};

@@ -13,6 +13,7 @@
 
 #include "cli/batch_messages.h"
 #include "cli/batch_misdeed.h"
+#include "cli/batch_order.h"
 #include "cli/batch_scene.h"
 #include "cli/batch_writer.h"
 #include "cli/driver_failure.h"
@@ -31,73 +32,88 @@ constexpr auto between_messages = std::chrono::milliseconds(100);
 /// A frame that was stopped earlier than this is begun again rather than kept.
 constexpr double seconds_worth_keeping = 1;
 
-struct Order {
-    std::size_t job;
-    bool wait;
-};
-
 /// What the supervisor says, read on a thread of its own: an order to stop is heard while rendering.
 class Orders {
 public:
-    explicit Orders(MessageSocket& socket) : reader_([this, &socket] { read(socket); }) { reader_.detach(); }
+    /// What comes before the first is `settings`.
+    Orders(MessageSocket& socket, WorkerSettings& settings) {
+        wait_for_settings(socket, settings);
+        reader_ = std::thread([this, &socket] { read(socket); });
+        reader_.detach();
+    }
 
     /// The next one; nothing once there will be none.
     std::optional<Order> next() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return !orders_.empty() || stop_.stop_requested(); });
         if (stop_.stop_requested()) return std::nullopt;
-        const Order order = orders_.front();
+        Order order = std::move(orders_.front());
         orders_.pop_front();
         return order;
     }
     std::stop_token stop() const { return stop_.get_token(); }
 
 private:
+    static void wait_for_settings(MessageSocket& socket, WorkerSettings& settings) {
+        for (;;) {
+            if (const std::optional<Json> message = socket.next()) {
+                settings = read_worker_settings(*message);
+                return;
+            }
+            if (!socket.receive()) exit_at_once(0);  // the supervisor is gone
+        }
+    }
+
     void read(MessageSocket& socket) {
-        while (socket.receive()) {
+        do {
             while (const std::optional<Json> message = socket.next()) {
                 const std::lock_guard lock(mutex_);
-                if (message->contains("job")) orders_.push_back({message->at("job"), message->at("wait")});
+                if (message->contains("job")) {
+                    orders_.push_back(read_order(*message, content_));
+                    content_ = orders_.back().content;
+                }
                 if (message->contains("stop")) stop_.request_stop();
                 changed_.notify_all();
             }
-        }
-        exit_at_once(0);  // the supervisor is gone
+        } while (socket.receive());
+        exit_at_once(0);
     }
 
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Order> orders_{};
+    std::shared_ptr<const SceneContent> content_{};  ///< of the last order
     std::stop_source stop_{};
     std::thread reader_;
 };
 
 class Worker {
 public:
-    Worker(BatchSetup& setup, int file)
-        : setup_(setup),
-          socket_(file),
-          orders_(socket_),
+    explicit Worker(int file)
+        : socket_(file),
+          orders_(socket_, settings_),
           writer_([this](std::size_t job, const std::optional<Error>& error) {
               if (error) {
                   say_failed(job, *error);
               } else {
                   socket_.send({{"written", job}});
               }
-          }) {}
+          }) {
+        set_log_level(settings_.log_level);
+    }
 
     void run() {
         while (const std::optional<Order> order = orders_.next()) {
             try {
                 make(*order);
             } catch (const Error& error) {
-                say_failed(order->job, error);
+                say_failed(order->index, error);
             } catch (const std::bad_alloc&) {
-                say_failed(order->job, Error(ExitCode::memory,
-                                             "out of memory: the scene or its image needs more "
-                                             "than there is"));
+                say_failed(order->index, Error(ExitCode::memory,
+                                               "out of memory: the scene or its image needs more "
+                                               "than there is"));
             } catch (const std::exception& error) {
-                say_failed(order->job,
+                say_failed(order->index,
                            Error(ExitCode::internal, fmt::format("internal error: {}", error.what())));
             }
         }
@@ -110,55 +126,55 @@ private:
     }
 
     void make(const Order& order) {
-        const BatchJob& job = setup_.jobs[order.job];
+        const BatchJob& job = order.job;
         const auto wait = order.wait ? Claim::Wait::until_free : Claim::Wait::no;
         std::unique_ptr<Claim> claim = Claim::take(job.outputs.front(), wait);
         if (!claim) {
-            socket_.send({{"taken", order.job}});
+            socket_.send({{"taken", order.index}});
             return;
         }
-        ImageToWrite task{.job = order.job, .outputs = outputs_to_write(job), .claim = std::move(claim)};
+        ImageToWrite task{.job = order.index, .outputs = outputs_to_write(order), .claim = std::move(claim)};
         if (task.outputs.empty()) {
-            socket_.send({{"finished", order.job}});
+            socket_.send({{"finished", order.index}});
             return;
         }
-        socket_.send({{"started", order.job}});
+        socket_.send({{"started", order.index}});
         misbehave_if_asked(job);
         open_device();
-        render(job, scene_->prepare(job), std::move(task));
+        render(order, scene_->prepare(job, *order.content), std::move(task));
     }
 
     /// Those that nobody has made, with the claim in hand: so it stays.
-    std::vector<BatchOutput> outputs_to_write(const BatchJob& job) {
-        std::vector<BatchOutput> outputs = outputs_of(job, setup_.content_of(job), setup_.engine);
+    std::vector<BatchOutput> outputs_to_write(const Order& order) const {
+        std::vector<BatchOutput> outputs = outputs_of(order.job, *order.content, settings_.engine);
         std::map<fs::path, FolderRecords> folders;
-        if (!setup_.force)
+        if (!settings_.force)
             std::erase_if(outputs, [&](const auto& o) { return reason_to_render(o, folders).empty(); });
         return outputs;
     }
 
     void open_device() {
         if (device_) return;
-        device_ = std::make_unique<Device>(setup_.device);
+        device_ = std::make_unique<Device>(settings_.device);
         take_driver_failures();
-        device_->memory().set_limit(setup_.max_memory.value_or(physical_memory_bytes()));
-        scene_ = std::make_unique<BatchScene>(*device_, setup_);
+        device_->memory().set_limit(settings_.max_memory.value_or(physical_memory_bytes()));
+        scene_ = std::make_unique<BatchScene>(*device_);
     }
 
-    Checkpoints checkpoints_of(const BatchJob& job, const ImageToWrite& task, const RenderSettings& settings,
+    Checkpoints checkpoints_of(const Order& order, const ImageToWrite& task, const RenderSettings& settings,
                                Film& film) {
         Checkpoints checkpoints;
         // Of the pixels: how files store them does not matter.
         const std::string hash =
-            hash_of_record(make_record(job, {}, false, setup_.content_of(job), setup_.engine));
-        if (setup_.checkpoint_seconds <= 0) return checkpoints;
+            hash_of_record(make_record(order.job, {}, false, *order.content, settings_.engine));
+        if (settings_.checkpoint_seconds <= 0) return checkpoints;
         if (const auto samples = read_checkpoint(task.checkpoint, hash, film)) {
             checkpoints.first_sample = *samples;
             const std::uint64_t total = pixel_count(settings.resolution) * std::uint64_t(settings.spp);
             socket_.send({{"resumed", task.job}, {"done", *samples}, {"total", total}});
         }
         const auto last = std::make_shared<Clock::time_point>(Clock::now());
-        const std::chrono::duration<double> interval(setup_.checkpoint_seconds);
+        const std::chrono::duration<double> interval(settings_.checkpoint_seconds);
         checkpoints.due = [last, interval] { return Clock::now() - *last >= interval; };
         checkpoints.save = [path = task.checkpoint, hash, &film, last](std::uint64_t samples) {
             try {
@@ -172,7 +188,8 @@ private:
         return checkpoints;
     }
 
-    void render(const BatchJob& job, const PreparedJob& prepared, ImageToWrite task) {
+    void render(const Order& order, const PreparedJob& prepared, ImageToWrite task) {
+        const BatchJob& job = order.job;
         Device& device = *device_;
         const RenderSettings& settings = prepared.settings;
         const MemoryPlan& plan = prepared.plan;
@@ -185,7 +202,7 @@ private:
         Rendered result{{}, prepared.camera, settings, settings.resolution, {}, 0, 0};
         {
             Film film(device.memory(), settings.resolution.width, settings.resolution.height);
-            const Checkpoints checkpoints = checkpoints_of(job, task, settings, film);
+            const Checkpoints checkpoints = checkpoints_of(order, task, settings, film);
             auto said = Clock::now();
             const auto say_progress = [&](std::uint64_t done, std::uint64_t total) {
                 if (Clock::now() - said < between_messages) return;
@@ -240,7 +257,7 @@ private:
         }
     }
 
-    BatchSetup& setup_;
+    WorkerSettings settings_{};
     MessageSocket socket_;
     Orders orders_;
     std::unique_ptr<Device> device_{};
@@ -250,8 +267,8 @@ private:
 
 }  // namespace
 
-void run_batch_worker(BatchSetup& setup, int socket) {
-    Worker worker(setup, socket);
+void run_batch_worker(int socket) {
+    Worker worker(socket);
     worker.run();
     exit_at_once(0);
 }

@@ -1,14 +1,12 @@
 // The worker of a batch: the process that renders.
 #pragma once
 
-#include "cli/batch_setup.h"
-
 namespace sahl::cli {
 
-/// Renders the jobs that the other end of `socket` names until that is closed or says stop; then ends the
-/// process. To be called in a process of its own that has used no OpenCL yet.
+/// Renders the jobs that the other end of `socket` describes until that is closed or says stop; then ends the
+/// process. To be called in a process of its own.
 ///
-/// It is told {"job": N, "wait": BOOL} and {"stop": true}; it says, N being a job,
+/// It is told what batch_order.h says, and {"stop": true}; it says, N being a job,
 ///   {"taken": N}                     another process has it; only without "wait"
 ///   {"finished": N}                  another process has made it by now
 ///   {"started": N}                   it has it
@@ -19,6 +17,6 @@ namespace sahl::cli {
 ///   {"written": N}                   all files are there
 ///   {"failed": N, "code", "message"} could take another too, unless it was rendered before
 ///   {"stopped": N, "checkpoint"}     it was told to stop in the midst of it
-[[noreturn]] void run_batch_worker(BatchSetup& setup, int socket);
+[[noreturn]] void run_batch_worker(int socket);
 
 }  // namespace sahl::cli

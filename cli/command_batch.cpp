@@ -81,12 +81,12 @@ std::vector<JobOutcome> find_finished(BatchSetup& setup) {
     std::map<fs::path, FolderRecords> folders;
     for (std::size_t i = 0; i < setup.jobs.size(); ++i) {
         JobOutcome& outcome = outcomes[i];
-        if (setup.force) {
+        if (setup.worker.force) {
             outcome.reason = "forced";
             continue;
         }
         const BatchJob& job = setup.jobs[i];
-        for (const BatchOutput& output : outputs_of(job, setup.content_of(job), setup.engine)) {
+        for (const BatchOutput& output : outputs_of(job, setup.content_of(job), setup.worker.engine)) {
             const std::string reason = reason_to_render(output, folders);
             if (reason.empty()) continue;
             outcome.reason = job.outputs.size() == 1 ? reason : output.path.string() + ": " + reason;
@@ -95,6 +95,14 @@ std::vector<JobOutcome> find_finished(BatchSetup& setup) {
         if (outcome.reason.empty()) outcome.state = JobState::finished;
     }
     return outcomes;
+}
+
+/// Where nothing is to be done nothing needs to be written.
+void check_writable(const BatchSetup& setup, const std::vector<JobOutcome>& outcomes) {
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        if (outcomes[i].state == JobState::finished) continue;
+        for (const fs::path& output : setup.jobs[i].outputs) check_output_file(output);
+    }
 }
 
 /// Of images that were finished just before somebody was killed.
@@ -114,15 +122,16 @@ void remove_lock_files(const BatchSetup& setup) {
 ExitCode batch(const BatchOptions& options, const CommonOptions& common) {
     BatchSetup setup;
     setup.jobs = expand_batch(read_entries(options));
-    setup.device = common.device;
-    setup.device.traversal = options.traversal;
-    setup.max_memory = options.max_memory;
-    setup.checkpoint_seconds = options.checkpoint_seconds;
-    setup.force = options.force;
+    setup.worker = {common.device, options.max_memory, options.checkpoint_seconds, options.force,
+                    engine_identity()};
+    setup.worker.device.traversal = options.traversal;
+    if (common.quiet) setup.worker.log_level = LogLevel::quiet;
+    if (common.verbose) setup.worker.log_level = LogLevel::verbose;
     if (options.status_file) check_output_file(*options.status_file);
     if (options.html_file) check_output_file(*options.html_file);
     std::vector<JobOutcome> outcomes = find_finished(setup);
     if (options.check) return print_batch_check(setup, outcomes, common.json);
+    check_writable(setup, outcomes);
     if (options.dry_run) return print_batch_plan(setup, outcomes, common.json);
 
     defer_interruption();  // what is finished of an image is kept
@@ -135,6 +144,7 @@ ExitCode batch(const BatchOptions& options, const CommonOptions& common) {
     if (options.html_file) write_batch_page(*options.html_file, setup, outcomes);
     if (end.interrupted) throw Interrupted("what is finished stays; the same command goes on");
     if (!end.message.empty()) log_error(end.message);
+    if (end.code == ExitCode::ok && report.lost_events()) throw Error(*report.lost_events());
     return end.code;
 }
 

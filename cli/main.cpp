@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/batch_process.h"
+#include "cli/batch_worker.h"
 #include "cli/command_table.h"
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
@@ -207,6 +209,8 @@ int main(int argc, char** argv) {
     // A reader that went away and a file size limit are failed writes with a message, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    // Its supervisor tells it of signals.
+    if (const auto socket = sahl::cli::worker_socket(argc, argv)) sahl::cli::run_batch_worker(*socket);
     sahl::cli::take_signals();
     const int status = sahl::cli::guarded_run(argc, argv);
     sahl::cli::defer_interruption();  // it is at its end: nothing to tell any more

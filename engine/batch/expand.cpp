@@ -150,7 +150,8 @@ void check_formats(const BatchEntry& entry, const BatchJob& job) {
                                     output.string()));
     try {
         const std::vector<OutputSettings> encodings = settings_for(job.outputs, encoding_of(job.settings));
-        for (std::size_t i = 0; i < job.outputs.size(); ++i) check_output(job.outputs[i], encodings[i]);
+        for (std::size_t i = 0; i < job.outputs.size(); ++i)
+            check_output_format(job.outputs[i], encodings[i]);
     } catch (const Error& error) {
         if (error.code() == ExitCode::usage) fail(entry, error.what());
         throw;

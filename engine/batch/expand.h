@@ -15,8 +15,8 @@ inline constexpr std::size_t most_batch_jobs = 1'000'000;
 /// The jobs of all entries in their order. Within an entry scenes change slowest, then parameters in their
 /// order, then frames, then cameras: jobs that share a scene stand beside each other.
 /// Throws SceneError at the entry, or Error(usage) where that is of the command line, for patterns that make
-/// no names, two jobs that would write one file, and too many jobs; as check_output for what cannot be
-/// written. Changes nothing.
+/// no names, names of no format that can hold what is asked for, two jobs that would write one file, and too
+/// many jobs.
 std::vector<BatchJob> expand_batch(std::span<const BatchEntry> entries);
 
 }  // namespace sahl

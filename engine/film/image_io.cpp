@@ -12,8 +12,12 @@ namespace sahl {
 
 namespace fs = std::filesystem;
 
-void check_output(const fs::path& path, const OutputSettings& settings) {
+void check_output_format(const fs::path& path, const OutputSettings& settings) {
     encoding_of(path, settings);
+}
+
+void check_output(const fs::path& path, const OutputSettings& settings) {
+    check_output_format(path, settings);
     check_output_file(path);
 }
 

@@ -55,6 +55,9 @@ std::vector<OutputSettings> settings_for(std::span<const std::filesystem::path> 
 /// cannot be written (see check_output_file). Changes nothing.
 void check_output(const std::filesystem::path& path, const OutputSettings& settings);
 
+/// The same but for whether anything can be written there.
+void check_output_format(const std::filesystem::path& path, const OutputSettings& settings);
+
 /// What write_image takes of memory beside the image and the AOVs, at most: the file and bands of rows
 /// on their way into it. Throws as check_output does for what the format cannot hold.
 std::uint64_t encoder_bytes(const std::filesystem::path& path, const OutputSettings& settings, int width,

@@ -45,6 +45,42 @@ TEST_CASE("batch: each image is rendered as sahl render does it, and not again b
     CHECK(night.files() == files);
 }
 
+TEST_CASE("batch: settings, cameras and names of any bytes reach the worker as they are", "[cli][batch]") {
+    const Night night("1");
+    const std::string scene = "sc\xc3\xa8ne \xff.json";  // a space, UTF-8, and a byte that is none
+    fs::copy_file(night.folder / "balls.json", night.folder / scene);
+    const std::vector<std::string> settings{"--size",          "20x12",
+                                            "--depth",         "2",
+                                            "--spp",           "3",
+                                            "--seed",          "7000000000",
+                                            "--aov",           "Z,id.primitive",
+                                            "--pixel-type",    "float",
+                                            "--exposure",      "0.3",
+                                            "--compression",   "piz",
+                                            "--build-quality", "fast",
+                                            "--traversal",     "scalar",
+                                            "--set",           "x=0.1",
+                                            "--threads",       "1",
+                                            "--max-mem",       "200M"};
+    std::vector<std::string> batch{"batch", scene, "--cameras", "top", "-o", "a b/{scene}.exr"};
+    std::vector<std::string> render{"render", scene, "--camera", "top", "-o", "single.exr"};
+    batch.insert(batch.end(), settings.begin(), settings.end());
+    render.insert(render.end(), settings.begin(), settings.end());
+    const ProcessResult result = run_sahl_in(night.folder.path(), batch);
+    INFO(result.err);
+    REQUIRE(result.status == 0);
+    const ProcessResult single = run_sahl_in(night.folder.path(), render);
+    INFO(single.err);
+    REQUIRE(single.status == 0);
+    const fs::path image = night.folder / "a b/sc\xc3\xa8ne \xff.exr";
+    CHECK(read_image(image).pixels == read_image(night.folder / "single.exr").pixels);
+    // The record is longer, and nothing else: layers, types and compression are the same.
+    const std::string bytes = content_of(image);
+    for (const char* text : {"id.primitive", "Sahl:Record", "piz"}) CHECK(contains(bytes, text));
+    batch.emplace_back("--check");
+    CHECK(run_sahl_in(night.folder.path(), batch).status == 0);
+}
+
 TEST_CASE("batch: what is missing, damaged or changed is rendered again, and the reason is said",
           "[cli][batch]") {
     const Night night("1-3", R"(["out/{frame:04}.exr", "out/{frame:04}.png"])");
