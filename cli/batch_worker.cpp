@@ -145,11 +145,10 @@ private:
     }
 
     /// Those that nobody has made, with the claim in hand: so it stays.
-    std::vector<BatchOutput> outputs_to_write(const Order& order) const {
+    std::vector<BatchOutput> outputs_to_write(const Order& order) {
         std::vector<BatchOutput> outputs = outputs_of(order.job, *order.content, settings_.engine);
-        std::map<fs::path, FolderRecords> folders;
         if (!settings_.force)
-            std::erase_if(outputs, [&](const auto& o) { return reason_to_render(o, folders).empty(); });
+            std::erase_if(outputs, [&](const auto& o) { return reason_to_render(o, folders_).empty(); });
         return outputs;
     }
 
@@ -260,6 +259,7 @@ private:
     WorkerSettings settings_{};
     MessageSocket socket_;
     Orders orders_;
+    std::map<fs::path, FolderRecords> folders_{};
     std::unique_ptr<Device> device_{};
     std::unique_ptr<BatchScene> scene_{};
     BatchWriter writer_;

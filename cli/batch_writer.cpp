@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/batch/image_record.h"
+#include "engine/core/atomic_file.h"
 
 namespace sahl::cli {
 
@@ -13,8 +14,10 @@ void write_outputs(const ImageToWrite& task) {
     for (const BatchOutput& output : task.outputs) {
         OutputSettings encoding = output.encoding;
         encoding.metadata.emplace_back(record_name, output.record);
-        write_image(output.path, task.image, encoding,
-                    output.has_aovs ? std::span(task.aovs) : std::span<const AovImage>());
+        const auto layers = output.has_aovs ? std::span(task.aovs) : std::span<const AovImage>();
+        const std::vector<unsigned char> file = encode_image(output.path, task.image, encoding, layers);
+        // A folder of thousands of images is searched once, at the end, and not for each of them.
+        write_file(output.path, std::as_bytes(std::span(file)), 0666, Stale::leave);
         if (!keeps_record(output.path)) add_folder_record(output.path, output.record);
     }
     std::error_code ignored;

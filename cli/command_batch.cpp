@@ -113,10 +113,16 @@ void remove_useless_checkpoints(const BatchSetup& setup, const std::vector<JobOu
     }
 }
 
-void remove_lock_files(const BatchSetup& setup) {
+/// Of this batch's workers, and of others' that were killed.
+void tidy_folders(const BatchSetup& setup) {
     std::set<fs::path> folders;
-    for (const BatchJob& job : setup.jobs) folders.insert(job.outputs.front().parent_path());
-    for (const fs::path& folder : folders) remove_lock_file(folder.empty() ? "." : folder);
+    for (const BatchJob& job : setup.jobs)
+        for (const fs::path& output : job.outputs)
+            folders.insert(output.has_parent_path() ? output.parent_path() : ".");
+    for (const fs::path& folder : folders) {
+        remove_stale_files(folder);
+        tidy_folder(folder);
+    }
 }
 
 ExitCode batch(const BatchOptions& options, const CommonOptions& common) {
@@ -140,7 +146,7 @@ ExitCode batch(const BatchOptions& options, const CommonOptions& common) {
     report.begin(outcomes);
     const BatchEnd end = run_batch(setup, outcomes, options.hang_seconds, report);
     report.end(outcomes, end);
-    remove_lock_files(setup);
+    tidy_folders(setup);
     if (options.html_file) write_batch_page(*options.html_file, setup, outcomes);
     if (end.interrupted) throw Interrupted("what is finished stays; the same command goes on");
     if (!end.message.empty()) log_error(end.message);

@@ -11,8 +11,8 @@ StoredRecord read_folder_record(const fs::path& path, std::map<fs::path, FolderR
     std::error_code failed;
     const std::uintmax_t size = fs::file_size(path, failed);
     if (failed) return {{}, fs::exists(path) ? failed.message() : "it is not there"};
-    const auto folder = folders.try_emplace(path.parent_path(), path.parent_path()).first;
-    const FolderRecords::Entry* entry = folder->second.find(path.filename().string());
+    FolderRecords& records = folders.try_emplace(path.parent_path(), path.parent_path()).first->second;
+    const FolderRecords::Entry* entry = records.find(path.filename().string());
     if (entry == nullptr) return {};
     if (entry->size != size) return {{}, "its size is not what was written"};
     return {entry->record, {}};

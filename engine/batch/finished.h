@@ -26,7 +26,7 @@ std::vector<BatchOutput> outputs_of(const BatchJob& job, const SceneContent& con
                                     const EngineIdentity& engine);
 
 /// Why `output` is not finished: its file is not there, not whole, or of something else ("spp changed from 1
-/// to 4"). Empty if it is. `folders` are read when they are asked for the first time.
+/// to 4"). Empty if it is. `folders` keeps what was read of their records.
 std::string reason_to_render(const BatchOutput& output,
                              std::map<std::filesystem::path, FolderRecords>& folders);
 

@@ -4,14 +4,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 
@@ -65,6 +71,27 @@ std::optional<std::pair<std::string, FolderRecords::Entry>> parse_line(const std
     return {{json["name"].get<std::string>(), {json["size"].get<std::uint64_t>(), json["record"].dump()}}};
 }
 
+void drop_replaced_records(const fs::path& path) {
+    std::vector<std::string> lines;
+    std::unordered_map<std::string, std::size_t> last;  // line of each name
+    std::ifstream file(path, std::ios::binary);
+    for (std::string line; std::getline(file, line) && !file.eof(); lines.push_back(std::move(line)))
+        if (const auto entry = parse_line(line)) last[entry->first] = lines.size();
+    const auto records = static_cast<std::size_t>(
+        std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return !line.empty(); }));
+    if (records <= 2 * last.size()) return;
+    std::vector<std::size_t> kept;
+    for (const auto& [name, line] : last) kept.push_back(line);
+    std::sort(kept.begin(), kept.end());
+    std::string text;
+    for (const std::size_t line : kept) text += lines[line] + "\n";
+    try {
+        write_file(path, std::as_bytes(std::span(text)));
+    } catch (const Error&) {
+        // It is long, and right.
+    }
+}
+
 /// Names may be no UTF-8, which JSON has to be.
 std::string name_of(const fs::path& image) {
     const std::string quoted =
@@ -74,13 +101,24 @@ std::string name_of(const fs::path& image) {
 
 }  // namespace
 
-FolderRecords::FolderRecords(const fs::path& folder) {
-    std::ifstream file(folder / file_name, std::ios::binary);
-    for (std::string line; std::getline(file, line) && !file.eof();)
+void FolderRecords::update() {
+    struct stat status {};
+    if (::stat(path_.c_str(), &status) != 0) status = {};
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (status.st_ino != inode_ || size < read_) {  // another file
+        entries_.clear();
+        read_ = 0;
+        inode_ = status.st_ino;
+    }
+    if (size == read_) return;
+    std::ifstream file(path_, std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(read_));
+    for (std::string line; std::getline(file, line) && !file.eof(); read_ += line.size() + 1)
         if (auto entry = parse_line(line)) entries_[entry->first] = std::move(entry->second);
 }
 
-const FolderRecords::Entry* FolderRecords::find(const std::string& name) const {
+const FolderRecords::Entry* FolderRecords::find(const std::string& name) {
+    update();
     const auto found = entries_.find(name_of(name));
     return found == entries_.end() ? nullptr : &found->second;
 }
@@ -121,11 +159,15 @@ std::unique_ptr<Claim> Claim::take(const fs::path& image, Wait wait) {
 
 Claim::~Claim() { ::close(file_); }
 
-void remove_lock_file(const fs::path& folder) {
+void tidy_folder(const fs::path& folder) {
     const fs::path path = folder / Claim::file_name;
     const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (file < 0) return;
-    if (lock(file, 0, 0, Claim::Wait::no) == Lock::taken && is_linked(file)) ::unlink(path.c_str());
+    // Whoever adds a record has a claim.
+    if (lock(file, 0, 0, Claim::Wait::no) == Lock::taken && is_linked(file)) {
+        drop_replaced_records(folder / FolderRecords::file_name);
+        ::unlink(path.c_str());
+    }
     ::close(file);
 }
 

@@ -10,8 +10,8 @@
 namespace sahl {
 
 /// The records of a folder's images, in `.sahl-batch.json`: a JSON object a line, each {"name", "size",
-/// "record"}; the last of a name counts. Lines are only ever added: whoever is killed there leaves a line
-/// without an end, which does not count.
+/// "record"}; the last of a name counts. Lines are only ever added, but by tidy_folder: whoever is killed
+/// there leaves a line without an end, which does not count.
 class FolderRecords {
 public:
     struct Entry {
@@ -19,14 +19,19 @@ public:
         std::string record;
     };
 
-    /// Reads what is there; lines that are none are passed over.
-    explicit FolderRecords(const std::filesystem::path& folder);
-    const Entry* find(const std::string& name) const;
+    explicit FolderRecords(const std::filesystem::path& folder) : path_(folder / file_name) {}
+    /// Reads what is new first; lines that are none are passed over. Until the next call.
+    const Entry* find(const std::string& name);
 
     static constexpr const char* file_name = ".sahl-batch.json";
 
 private:
-    std::map<std::string, Entry> entries_;
+    void update();
+
+    std::filesystem::path path_;
+    std::uint64_t inode_ = 0;
+    std::uint64_t read_ = 0;  ///< bytes of the file, whole lines
+    std::map<std::string, Entry> entries_{};
 };
 
 /// Adds the record of a finished image to those of its folder, and syncs it.
@@ -53,7 +58,8 @@ private:
     int file_;
 };
 
-/// Removes a folder's lock file if nobody holds a claim there.
-void remove_lock_file(const std::filesystem::path& folder);
+/// If nobody holds a claim in a folder, removes its lock file, and from its records what later lines replace
+/// where that is more than the rest.
+void tidy_folder(const std::filesystem::path& folder);
 
 }  // namespace sahl

@@ -156,14 +156,6 @@ void sync_folder(const fs::path& folder, const fs::path& path) {
     if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL)) fail(path, errno);
 }
 
-/// Removes temporary files of dead writers in `folder` that begin with `prefix`.
-void remove_stale_files(const fs::path& folder, std::string_view prefix) {
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (entry->path().filename().string().starts_with(prefix)) remove_if_stale(entry->path());
-    }
-}
-
 }  // namespace
 
 void remove_if_stale(const fs::path& temporary) {
@@ -176,6 +168,13 @@ void remove_if_stale(const fs::path& temporary) {
     struct stat status {};
     if (file.get() < 0 || ::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return;
     if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(temporary.c_str());
+}
+
+void remove_stale_files(const fs::path& folder, std::string_view prefix) {
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().filename().string().starts_with(prefix)) remove_if_stale(entry->path());
+    }
 }
 
 bool is_special_file(const fs::path& path) {
@@ -202,11 +201,11 @@ void check_output_file(const fs::path& path) try {
     fail(path, error.code().value());
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t mode) {
-    write_file(path, Pieces(&bytes, 1), mode);
+void write_file(const fs::path& path, std::span<const std::byte> bytes, mode_t mode, Stale stale) {
+    write_file(path, Pieces(&bytes, 1), mode, stale);
 }
 
-void write_file(const fs::path& path, Pieces pieces, mode_t mode) try {
+void write_file(const fs::path& path, Pieces pieces, mode_t mode, Stale stale) try {
     if (is_special_file(path)) return write_special(path, pieces);
     const fs::path target = follow_links(path);
     if (fs::is_directory(fs::status(target)) || !target.has_filename()) fail(path, EISDIR);
@@ -215,7 +214,7 @@ void write_file(const fs::path& path, Pieces pieces, mode_t mode) try {
 
     // A name may have 255 bytes: a long one is cut to leave room for the rest.
     const std::string name = "." + target.filename().string().substr(0, 200) + std::string(part_mark);
-    remove_stale_files(folder, name);
+    if (stale == Stale::remove) remove_stale_files(folder, name);
     Temporary temporary((folder / name).string(), mode, path);
     for (const auto& bytes : pieces) write_all(temporary.get(), bytes, path);
     struct stat old {};

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 namespace sahl {
 
@@ -20,17 +21,22 @@ bool is_special_file(const std::filesystem::path& path);
 /// and renamed, so that whoever opens `path` finds the old content or the new, and after a failure
 /// the old. Missing folders are made; a symbolic link stays and the file it leads to is replaced; a
 /// replaced file keeps its permissions, a new one has `mode` less the umask; a special file is written
-/// to directly. Temporary files that killed writers of `path` left are removed.
-/// Throws Error(output) naming `path`, the cause and the remedy; the temporary file is gone then.
-/// A process that wants the error instead of the signal when it meets its file size limit or a
+/// to directly. Temporary files that killed writers of `path` left are removed, unless the folder is not to
+/// be searched for them. Throws Error(output) naming `path`, the cause and the remedy; the temporary file is
+/// gone then. A process that wants the error instead of the signal when it meets its file size limit or a
 /// pipe without a reader ignores SIGXFSZ and SIGPIPE.
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes, mode_t mode = 0666);
+enum class Stale { remove, leave };
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes, mode_t mode = 0666,
+                Stale stale = Stale::remove);
 
 /// The same with several pieces, one behind the other.
 void write_file(const std::filesystem::path& path, std::span<const std::span<const std::byte>> pieces,
-                mode_t mode = 0666);
+                mode_t mode = 0666, Stale stale = Stale::remove);
 
 /// Removes `temporary` if it is a temporary file of write_file whose writer is dead.
 void remove_if_stale(const std::filesystem::path& temporary);
+
+/// Removes all of those in `folder` whose names begin with `prefix`.
+void remove_stale_files(const std::filesystem::path& folder, std::string_view prefix = ".");
 
 }  // namespace sahl
