@@ -11,32 +11,40 @@ kernel void describe(const global DevicePrimitive* primitives, const global floa
                      const global float* rays, const global float* hits, const global uint* hit_ids,
                      global float* values, global uint* ids, const uint capacity, const uint count) {
     const Shapes shapes = {primitives, shape_data, instances};
-    SAHL_FOR_EACH_RAY(i, count) {
-        const uint primitive = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
-        const uint instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
-        float depth = INFINITY;
-        float3 normal = (float3)(0.0f), albedo = (float3)(0.0f);
-        uint material_id = SAHL_AOV_NO_ID;
-        if (primitive != SAHL_NO_PRIMITIVE) {
-            const real3 d = load_soa3_real(rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
-            const real3 origin = load_soa3_real(rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
-            const float3 hit = load_soa3(hits, SAHL_HIT_T, capacity, i);
-            const Surface surface = surface_at(&shapes, instance, primitive, origin, d, hit.x, hit.y, hit.z);
-            const global DeviceMaterial* material = materials + surface.material;
-            const bool turned =
-                (material->flags & SAHL_MATERIAL_TWO_SIDED) && dot3_real(surface.ns, d) > (real)0;
-            depth = (float)(surface.t * dot3_real(d, camera_vector(camera.forward, camera.forward_low)));
-            normal = round3(turned ? -surface.ns : surface.ns);
-            albedo = surface_colors(&shapes, material, textures, &surface, primitive).diffuse;
-            material_id = surface.material;
+    const realv3 forward = same3_real(camera_vector(camera.forward, camera.forward_low));
+    SAHL_FOR_EACH_GROUP(i, count) {
+        const uintv hit_primitive = load_idsv(hit_ids, SAHL_HIT_PRIMITIVE, capacity, i);
+        const uintv instance = load_idsv(hit_ids, SAHL_HIT_INSTANCE, capacity, i);
+        const intv hit = (lane_numbers() < (intv)((int)(count - i))) & (hit_primitive != SAHL_NO_PRIMITIVE);
+        floatv depth = (floatv)(INFINITY);
+        floatv3 normal = same3((float3)(0.0f)), albedo = normal;
+        uintv material_ids = (uintv)(SAHL_AOV_NO_ID);
+        if (lane_bits(hit) != 0u) {
+            const uintv primitive = borrowed(hit, hit_primitive);
+            const realv3 d = load_soa3v_real(rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
+            const realv3 origin = load_soa3v_real(rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
+            const floatv3 place = load_soa3v(hits, SAHL_HIT_T, capacity, i);
+            const Surfaces surfaces =
+                surfaces_at(&shapes, hit, instance, primitive, origin, d, place.x, place.y, place.z);
+            const realv3 facing = where(dotv(surfaces.ns, d) > (real)0, negated(surfaces.ns), surfaces.ns);
+            depth = where(hit, convert_floatv(surfaces.t * dotv(d, forward)), depth);
+            material_ids = hit ? surfaces.material : material_ids;
+            for (uint rest = lane_bits(hit); rest != 0u;) {
+                const uint material_id = ((const uint*)&surfaces.material)[lowest_lane(rest)];
+                const global DeviceMaterial* material = materials + material_id;
+                const intv lanes = hit & (surfaces.material == material_id);
+                const bool turned = (material->flags & SAHL_MATERIAL_TWO_SIDED) != 0u;
+                rest &= ~lane_bits(lanes);
+                normal = where(lanes, roundv(turned ? facing : surfaces.ns), normal);
+                albedo = where(
+                    lanes, surface_colors(&shapes, material, textures, &surfaces, primitive).diffuse, albedo);
+            }
         }
-        values[(size_t)SAHL_AOV_DEPTH * capacity + i] = depth;
-        store_soa3(values, SAHL_AOV_NORMAL, capacity, i, normal);
-        store_soa3(values, SAHL_AOV_ALBEDO, capacity, i, albedo);
-        ids[(size_t)SAHL_AOV_PRIMITIVE * capacity + i] =
-            primitive == SAHL_NO_PRIMITIVE ? SAHL_AOV_NO_ID : primitive;
-        ids[(size_t)SAHL_AOV_INSTANCE * capacity + i] =
-            primitive == SAHL_NO_PRIMITIVE ? SAHL_AOV_NO_ID : instance;
-        ids[(size_t)SAHL_AOV_MATERIAL * capacity + i] = material_id;
+        vstorev(depth, values + (size_t)SAHL_AOV_DEPTH * capacity + i);
+        store_soa3v(values, SAHL_AOV_NORMAL, capacity, i, normal);
+        store_soa3v(values, SAHL_AOV_ALBEDO, capacity, i, albedo);
+        store_idsv(ids, SAHL_AOV_PRIMITIVE, capacity, i, hit ? hit_primitive : (uintv)(SAHL_AOV_NO_ID));
+        store_idsv(ids, SAHL_AOV_INSTANCE, capacity, i, hit ? instance : (uintv)(SAHL_AOV_NO_ID));
+        store_idsv(ids, SAHL_AOV_MATERIAL, capacity, i, material_ids);
     }
 }

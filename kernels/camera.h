@@ -3,7 +3,7 @@
 #define SAHL_CAMERA_H
 
 #include "kernels/device_types.h"
-#include "kernels/real.h"
+#include "kernels/lanes.h"
 #include "kernels/sampling.h"
 
 // Pixels are numbered in strips of this many rows, column by column, so that neighbours in a batch
@@ -24,13 +24,29 @@ static inline real3 camera_vector(const float* value, const float* lacking) {
                    (real)value[2] + (real)lacking[2]);
 }
 
-/// Unit direction through position `in_pixel` of the pixel at (x, y), y down.
-static inline real3 camera_direction(const CameraConstants* camera, uint x, uint y, float2 in_pixel) {
-    real right = (real)x - (real)camera->half_width + (real)in_pixel.x;
-    real down = (real)y - (real)camera->half_height + (real)in_pixel.y;
-    return normalize3_real(camera_vector(camera->forward, camera->forward_low) +
-                           camera_vector(camera->step_x, camera->step_x_low) * right +
-                           camera_vector(camera->step_y, camera->step_y_low) * down);
+/// Positions in the image, in pixels, y down: whole ones and the rest.
+typedef struct {
+    uint x[SAHL_LANES], y[SAHL_LANES];
+    float in_x[SAHL_LANES], in_y[SAHL_LANES];
+} CameraSamples;
+
+static inline void set_camera_sample(CameraSamples* samples, uint k, uint x, uint y, float2 in_pixel) {
+    samples->x[k] = x;
+    samples->y[k] = y;
+    samples->in_x[k] = in_pixel.x;
+    samples->in_y[k] = in_pixel.y;
+}
+
+/// Unit directions through the samples.
+static inline realv3 camera_directions(const CameraConstants* camera, const CameraSamples* samples) {
+    const realv right =
+        convert_realv(vloadv(samples->x)) - (real)camera->half_width + convert_realv(vloadv(samples->in_x));
+    const realv down =
+        convert_realv(vloadv(samples->y)) - (real)camera->half_height + convert_realv(vloadv(samples->in_y));
+    const realv3 forward = same3_real(camera_vector(camera->forward, camera->forward_low));
+    const realv3 step_x = same3_real(camera_vector(camera->step_x, camera->step_x_low));
+    const realv3 step_y = same3_real(camera_vector(camera->step_y, camera->step_y_low));
+    return normalizev(add(add(forward, mul(step_x, right)), mul(step_y, down)));
 }
 
 #endif

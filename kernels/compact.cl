@@ -47,40 +47,62 @@ kernel void sum_children(global uint* block_counts, const global uint* block_sha
     totals[2] = (uint)(shadow_rays >> 32);
 }
 
-/// Copies ray `from` of the children to ray `to` of the two batches together.
-static inline void move_ray(const global float* children, const global uint* child_ids, uint from,
-                            global float* next, global uint* next_ids, global float* waiting,
-                            global uint* waiting_ids, uint capacity, uint to) {
-    global float* rays = to < capacity ? next : waiting;
-    global uint* ids = to < capacity ? next_ids : waiting_ids;
-    uint slot = to < capacity ? to : to - capacity;
-    for (uint k = 0; k < SAHL_RAY_FLOATS; ++k) {
-        rays[(size_t)k * capacity + slot] = children[(size_t)k * capacity + from];
+/// Copies `count` numbers of `from`, the places of which are given, to positions `to` and on of two arrays
+/// together, the first of which is `capacity` long.
+static inline void move_numbers(const global uint* from, const uint* place, uint count, global uint* next,
+                                global uint* waiting, uint capacity, uint to) {
+    const uint fitting = to < capacity ? SAHL_MIN(count, capacity - to) : 0u;
+    for (uint k = 0; k < fitting; ++k) {
+        next[to + k] = from[place[k]];
     }
-    for (uint k = 0; k < SAHL_RAY_UINTS; ++k) {
-        ids[(size_t)k * capacity + slot] = child_ids[(size_t)k * capacity + from];
+    for (uint k = fitting; k < count; ++k) {
+        waiting[to + k - capacity] = from[place[k]];
     }
 }
 
-kernel void compact(const global float* children, const global uint* child_ids, const global uint* outcomes,
-                    const global uint* block_counts, global float* next, global uint* next_ids,
-                    global float* waiting, global uint* waiting_ids, const uint capacity, const uint count,
+/// Where children of one kind come from and go to.
+typedef struct {
+    const global uint* rays;  // floats' bits
+    const global uint* ids;
+    uint place[SAHL_COMPACT_BLOCK];
+    uint count;
+    uint to;
+} Moved;
+
+static inline void move_rays(const Moved* moved, global uint* next, global uint* next_ids,
+                             global uint* waiting, global uint* waiting_ids, uint capacity) {
+    for (uint k = 0; k < SAHL_RAY_FLOATS; ++k) {
+        const size_t array = (size_t)k * capacity;
+        move_numbers(moved->rays + array, moved->place, moved->count, next + array, waiting + array, capacity,
+                     moved->to);
+    }
+    for (uint k = 0; k < SAHL_RAY_UINTS; ++k) {
+        const size_t array = (size_t)k * capacity;
+        move_numbers(moved->ids + array, moved->place, moved->count, next_ids + array, waiting_ids + array,
+                     capacity, moved->to);
+    }
+}
+
+kernel void compact(const global uint* children, const global uint* child_ids, const global uint* outcomes,
+                    const global uint* block_counts, global uint* next, global uint* next_ids,
+                    global uint* waiting, global uint* waiting_ids, const uint capacity, const uint count,
                     const uint block_count) {
     const uint block = (uint)get_global_id(0);
     if (block >= block_count) {
         return;
     }
-    const global float* transmitted = children + (size_t)SAHL_RAY_FLOATS * capacity;
-    const global uint* transmitted_ids = child_ids + (size_t)SAHL_RAY_UINTS * capacity;
-    uint to_reflected = block_counts[block], to_transmitted = block_counts[block_count + block];
+    Moved reflected = {.rays = children, .ids = child_ids, .to = block_counts[block]};
+    Moved transmitted = {.rays = children + (size_t)SAHL_RAY_FLOATS * capacity,
+                         .ids = child_ids + (size_t)SAHL_RAY_UINTS * capacity,
+                         .to = block_counts[block_count + block]};
     const uint end = SAHL_MIN((block + 1u) * SAHL_COMPACT_BLOCK, count);
     for (uint i = block * SAHL_COMPACT_BLOCK; i < end; ++i) {
-        if (outcomes[i] & SAHL_OUTCOME_REFLECTED) {
-            move_ray(children, child_ids, i, next, next_ids, waiting, waiting_ids, capacity, to_reflected++);
-        }
-        if (outcomes[i] & SAHL_OUTCOME_TRANSMITTED) {
-            move_ray(transmitted, transmitted_ids, i, next, next_ids, waiting, waiting_ids, capacity,
-                     to_transmitted++);
-        }
+        // A place that does not count is overwritten by the next that does.
+        reflected.place[reflected.count] = i;
+        reflected.count += (outcomes[i] & SAHL_OUTCOME_REFLECTED) != 0u;
+        transmitted.place[transmitted.count] = i;
+        transmitted.count += (outcomes[i] & SAHL_OUTCOME_TRANSMITTED) != 0u;
     }
+    move_rays(&reflected, next, next_ids, waiting, waiting_ids, capacity);
+    move_rays(&transmitted, next, next_ids, waiting, waiting_ids, capacity);
 }

@@ -1,60 +1,61 @@
-// Whitted's surface: Phong or Blinn light, mirror direction, Snell's law.
+// Whitted's surface, SAHL_LANES places on one material: Phong or Blinn light, mirror directions, Snell's law.
 #ifndef SAHL_MATERIAL_H
 #define SAHL_MATERIAL_H
 
 #include "kernels/device_types.h"
+#include "kernels/lanes.h"
 #include "kernels/light.h"
-#include "kernels/real.h"
+#include "kernels/power.h"
 
 /// Light sent towards `wo` of what arrives from `wi` (both unit, away from the surface).
 /// Phong (1975): (R·V)^n, gated by N·L > 0. Blinn (1977): (N·H)^n, ungated.
 /// With interpolated normals a light can be above `ns` and below the surface; it is not cut off
 /// here, the shadow ray decides (see Hanika 2021 for the terminator this leaves).
-static inline float3 phong_light(const global DeviceMaterial* material, float3 diffuse, float3 specular,
-                                 float3 ns, float3 wi, float3 wo) {
-    float cosine = dot3(ns, wi);
-    float3 light = diffuse * SAHL_MAX(cosine, 0.0f);
-    if (!is_nonzero(specular)) {
+static inline floatv3 phong_light(const global DeviceMaterial* material, floatv3 diffuse, floatv3 specular,
+                                  floatv3 ns, floatv3 wi, floatv3 wo) {
+    floatv cosine = dotv(ns, wi);
+    floatv3 light = mul(diffuse, SAHL_MAX(cosine, (floatv)(0.0f)));
+    if (lane_bits(nonzerov(specular)) == 0u) {
         return light;
     }
-    float lobe = 0.0f;
+    floatv lobe;
     if (material->flags & SAHL_MATERIAL_BLINN) {
-        float3 h = wi + wo;
-        float length2 = dot3(h, h);
+        floatv3 h = add(wi, wo);
+        floatv length2 = dotv(h, h);
+        floatv base = dotv(ns, h) / sqrt(length2);
         lobe =
-            length2 > 0.0f ? power(SAHL_MAX(dot3(ns, h) / sqrt(length2), 0.0f), material->shininess) : 0.0f;
-    } else if (cosine > 0.0f) {
-        float3 r = ns * (2.0f * cosine) - wi;
-        lobe = power(SAHL_MAX(dot3(r, wo), 0.0f), material->shininess);
+            where(length2 > 0.0f, power(SAHL_MAX(base, (floatv)(0.0f)), material->shininess), (floatv)(0.0f));
+    } else {
+        floatv3 r = sub(mul(ns, 2.0f * cosine), wi);
+        floatv base = dotv(r, wo);
+        lobe =
+            where(cosine > 0.0f, power(SAHL_MAX(base, (floatv)(0.0f)), material->shininess), (floatv)(0.0f));
     }
-    return light + specular * lobe;
+    return add(light, mul(specular, lobe));
 }
 
 /// What remains of light that has come `distance` to this surface by reflection; infinite for the
 /// background's.
-static inline float reflection_falloff(const global DeviceMaterial* material, float distance) {
+static inline floatv reflection_falloff(const global DeviceMaterial* material, floatv distance) {
     const global float* a = material->attenuation;
-    if (isinf(distance)) {
-        return a[1] == 0.0f && a[2] == 0.0f ? 1.0f / a[0] : 0.0f;
-    }
-    return 1.0f / attenuation(a, distance);
+    float of_background = a[1] == 0.0f && a[2] == 0.0f ? 1.0f / a[0] : 0.0f;
+    return where(isinf(distance), (floatv)(of_background), 1.0f / attenuation(a, distance));
 }
 
-/// The mirror direction of unit `d` at unit normal `n` (either side).
-static inline real3 reflected_direction(real3 d, real3 n) {
-    return normalize3_real(d - n * ((real)2 * dot3_real(d, n)));
+/// The mirror directions of unit `d` at unit normals `n` (either side).
+static inline realv3 reflected_directions(realv3 d, realv3 n) {
+    return normalizev(sub(d, mul(n, (real)2 * dotv(d, n))));
 }
 
-/// Snell's law: the direction of unit `d` behind a surface with unit normal `n` against d; eta is
-/// the index on d's side over the other's. False on total internal reflection.
-static inline bool refracted_direction(real3 d, real3 n, real eta, real3* refracted) {
-    real cosine = -dot3_real(d, n);
-    real k = (real)1 - eta * eta * ((real)1 - cosine * cosine);
-    if (k < (real)0) {
-        return false;
-    }
-    *refracted = normalize3_real(d * eta + n * (eta * cosine - sqrt(k)));
-    return true;
+/// Snell's law: the directions of unit `d` behind surfaces with unit normals `n` against d; eta is
+/// the index on d's side over the other's. Returns the lanes that are refracted, the others are reflected
+/// totally.
+static inline real_maskv refracted_directions(realv3 d, realv3 n, realv eta, realv3* refracted) {
+    realv cosine = -dotv(d, n);
+    realv k = (real)1 - eta * eta * ((real)1 - cosine * cosine);
+    real_maskv passes = ~(k < (real)0);
+    *refracted = where(passes, normalizev(add(mul(d, eta), mul(n, eta * cosine - sqrt(k)))), *refracted);
+    return passes;
 }
 
 #endif

@@ -41,41 +41,4 @@ static inline float4 difference_of_products(float4 a, float4 b, float4 c, float4
     return fma(a, b, -cd) + error;
 }
 
-/// log2 of a normal x > 0, relative error below 3e-7: the mantissa is brought to
-/// [sqrt(1/2), sqrt(2)) and log m = 2 atanh((m - 1)/(m + 1)) summed to the ninth power.
-static inline float log2_positive(float x) {
-    int bits = as_int(x);
-    int exponent = ((bits - 0x3f3504f3) >> 23);
-    float m = as_float(bits - (exponent << 23));
-    float s = (m - 1.0f) / (m + 1.0f);
-    float s2 = s * s;
-    float series =
-        fma(s2, fma(s2, fma(s2, fma(s2, 1.0f / 9.0f, 1.0f / 7.0f), 1.0f / 5.0f), 1.0f / 3.0f), 1.0f);
-    return fma(2.88539008f * s, series, (float)exponent);
-}
-
-/// 2^y for y <= 127, relative error below 2e-7; 0 where the result would be no normal number.
-static inline float exp2_bounded(float y) {
-    float whole = floor(y + 0.5f);
-    float f = (y - whole) * 0.693147181f;
-    float p =
-        fma(f,
-            fma(f,
-                fma(f,
-                    fma(f, fma(f, fma(f, fma(f, 1.0f / 5040.0f, 1.0f / 720.0f), 1.0f / 120.0f), 1.0f / 24.0f),
-                        1.0f / 6.0f),
-                    0.5f),
-                1.0f),
-            1.0f);
-    float scale = as_float(((int)SAHL_MAX(whole, -127.0f) + 127) << 23);
-    return y < -126.0f ? 0.0f : p * scale;
-}
-
-/// x^n for x in [0, 2], n >= 0 and n·log2(x) <= 127; 0^0 = 1. Relative error about
-/// 2e-7 (1 + n |log2 x|). The library's pow is neither fast nor the same on every device.
-static inline float power(float x, float n) {
-    float result = exp2_bounded(n * log2_positive(SAHL_MAX(x, 1.17549435e-38f)));
-    return x > 0.0f ? result : (n == 0.0f ? 1.0f : 0.0f);
-}
-
 #endif

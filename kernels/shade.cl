@@ -1,5 +1,8 @@
 // Hits -> light that needs no shadow test (ambient, emission, background), the light that each
 // shadow ray would bring, and reflected and transmitted rays with their weights.
+//
+// SAHL_LANES neighbours at a time. Their surfaces are found together; then each material among them is dealt
+// with once, for the lanes that have it: mostly all of them.
 
 #include "kernels/light.h"
 #include "kernels/material.h"
@@ -7,60 +10,168 @@
 #include "kernels/surface.h"
 #include "kernels/texture.h"
 
-/// The light of all lamps, each as if nothing were in between, into `light` (three arrays a lamp).
-/// Returns how many bring any: their shadow rays are to be traced.
-static inline uint shade_lights(const global DeviceLight* lights, uint light_count,
-                                const global DeviceMaterial* material, const SurfaceColors* colors,
-                                float3 position, float3 ns, float3 wo, float3 weight, global float* light,
-                                uint capacity, uint i) {
-    uint shadow_rays = 0;
-    for (uint l = 0; l < light_count; ++l) {
-        float3 to_light = vector_to_light(lights + l, position);
-        float distance = sqrt(dot3(to_light, to_light));
-        float3 wi = to_light / distance;
-        float3 brought = phong_light(material, colors->diffuse, colors->specular, ns, wi, wo) *
-                         arriving_light(lights + l, wi, distance);
-        brought *= weight;
-        shadow_rays += is_nonzero(brought);
-        store_soa3(light, 3u * l, capacity, i, brought);
+/// What the kernel works on.
+typedef struct {
+    Shapes shapes;
+    const global DeviceMaterial* materials;
+    const global DeviceTexture* textures;
+    const global DeviceLight* lights;
+    const SceneConstants* scene;
+    const global float* rays;
+    const global uint* ray_ids;
+    const global float* hits;
+    const global uint* hit_ids;
+    global float* contributions;
+    global uint* contribution_pixels;
+    global float* shadow_surfaces;
+    global float* shadow_light;  // three arrays a lamp
+    global float* children;
+    global uint* child_ids;
+    global uint* outcomes;
+    uint capacity, count, spawn;
+} ShadeWork;
+
+/// The light of all lamps on `lanes`, each as if nothing were in between, into the shadow light from i on;
+/// `first`: other lanes hold nothing yet. Returns how many bring any: their shadow rays are to be traced.
+static inline intv shade_lights(const ShadeWork* work, uint i, const global DeviceMaterial* material,
+                                const SurfaceColors* colors, floatv3 position, floatv3 ns, floatv3 wo,
+                                floatv3 weight, intv lanes, bool first) {
+    intv shadow_rays = (intv)(0);
+    for (uint l = 0; l < work->scene->light_count; ++l) {
+        const global DeviceLight* light = work->lights + l;
+        floatv3 to_light = vectors_to_light(light, position);
+        floatv distance = sqrt(dotv(to_light, to_light));
+        floatv3 wi = div(to_light, distance);
+        floatv3 brought = mul(phong_light(material, colors->diffuse, colors->specular, ns, wi, wo),
+                              arriving_light(light, wi, distance));
+        brought = mul(brought, weight);
+        shadow_rays -= nonzerov(brought);
+        if (!first) {
+            brought = where(lanes, brought, load_soa3v(work->shadow_light, 3u * l, work->capacity, i));
+        }
+        store_soa3v(work->shadow_light, 3u * l, work->capacity, i, brought);
     }
     return shadow_rays;
 }
 
-/// What a hit sends on: `reflected` with weight kr, `transmitted` with weight kt; a weight of 0
+/// What hits send on: `reflected` with weights kr, `transmitted` with weights kt; a weight of 0
 /// stands for no ray.
 typedef struct {
-    real3 reflected, transmitted;
-    float3 kr, kt;
+    realv3 reflected, transmitted;
+    floatv3 kr, kt;
 } Scattering;
 
-static inline Scattering scatter(const global DeviceMaterial* material, float3 reflection,
-                                 const Surface* surface, real3 ns, real3 facing, real3 d) {
+static inline Scattering scatter(const global DeviceMaterial* material, floatv3 reflection,
+                                 const Surfaces* surfaces, realv3 ns, realv3 facing, realv3 d) {
     Scattering s;
-    s.reflected = reflected_direction(d, ns);
     s.transmitted = d;
+    s.reflected = d;
     s.kr = reflection;
-    s.kt = load3(material->transmission);
+    s.kt = same3(load3(material->transmission));
     if (material->flags & SAHL_MATERIAL_TRANSMITS) {
-        real ior = material->ior, outside = material->ior_outside;
-        real eta = dot3_real(surface->ng, d) < (real)0 ? outside / ior : ior / outside;
-        if (!refracted_direction(d, facing, eta, &s.transmitted)) {
-            // Total internal reflection sends the transmitted light the mirror's way.
-            s.kr += s.kt;
-            s.kt = (float3)(0.0f);
-        }
+        const real ior = material->ior, outside = material->ior_outside;
+        realv eta = where(dotv(surfaces->ng, d) < (real)0, (realv)(outside / ior), (realv)(ior / outside));
+        // Total internal reflection sends the transmitted light the mirror's way.
+        intv passes = convert_intv(refracted_directions(d, facing, eta, &s.transmitted));
+        s.kr = where(passes, s.kr, add(s.kr, s.kt));
+        s.kt = where(passes, s.kt, same3((float3)(0.0f)));
+    }
+    if (lane_bits(nonzerov(s.kr)) != 0u) {
+        s.reflected = reflected_directions(d, ns);
     }
     return s;
 }
 
-/// The weight of a ray's light, which `distance` may have attenuated on its way to where the ray starts.
-static inline float3 attenuated_weight(const Shapes* shapes, const global DeviceMaterial* materials,
-                                       float3 weight, uint start, float distance) {
-    if (!(start & SAHL_RAY_ATTENUATED)) {
-        return weight;
+/// The weights of rays' light, which `distance` may have attenuated on its way to where they start.
+static inline floatv3 attenuated_weights(const ShadeWork* work, floatv3 weight, uintv start,
+                                         floatv distance) {
+    const intv attenuated = (start & SAHL_RAY_ATTENUATED) != 0u;
+    for (uint rest = lane_bits(attenuated); rest != 0u; rest &= rest - 1u) {
+        const uint lane = lowest_lane(rest);
+        const uint on = ((const uint*)&start)[lane] & SAHL_ID_MASK;
+        const floatv falloff =
+            reflection_falloff(work->materials + work->shapes.primitives[on].material, distance);
+        weight = where(lane_numbers() == (intv)((int)lane), mul(weight, falloff), weight);
     }
-    uint material = shapes->primitives[start & SAHL_ID_MASK].material;
-    return weight * reflection_falloff(materials + material, distance);
+    return weight;
+}
+
+/// Shades the hits of rays i to i + SAHL_LANES - 1.
+SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
+    const uint capacity = work->capacity;
+    const uintv pixel = load_idsv(work->ray_ids, SAHL_RAY_PIXEL, capacity, i);
+    const uintv hit_primitive = load_idsv(work->hit_ids, SAHL_HIT_PRIMITIVE, capacity, i);
+    const uintv instance = load_idsv(work->hit_ids, SAHL_HIT_INSTANCE, capacity, i);
+    const uintv start = load_idsv(work->ray_ids, SAHL_RAY_EXCLUDE, capacity, i);
+    const floatv3 place = load_soa3v(work->hits, SAHL_HIT_T, capacity, i);
+    const intv there = lane_numbers() < (intv)((int)(work->count - i));
+    const intv hit = there & (hit_primitive != SAHL_NO_PRIMITIVE);
+    const floatv3 weight = attenuated_weights(work, load_soa3v(work->rays, SAHL_RAY_WEIGHT, capacity, i),
+                                              there ? start : (uintv)(0u), place.x);
+    const floatv3 background = mul(
+        weight,
+        same3((float3)(work->scene->background[0], work->scene->background[1], work->scene->background[2])));
+    vstorev(pixel, work->contribution_pixels + i);
+    if (lane_bits(hit) == 0u) {
+        store_soa3v(work->contributions, 0u, capacity, i, background);
+        vstorev((uintv)(0u), work->outcomes + i);
+        return;
+    }
+    const uintv primitive = borrowed(hit, hit_primitive);
+    const realv3 d = load_soa3v_real(work->rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
+    const realv3 origin = load_soa3v_real(work->rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
+    const Surfaces surfaces =
+        surfaces_at(&work->shapes, hit, instance, primitive, origin, d, place.x, place.y, place.z);
+    const realv3 facing = where(dotv(surfaces.ns, d) > (real)0, negated(surfaces.ns), surfaces.ns);
+    const floatv3 position = roundv(surfaces.position);
+    const floatv3 offset = mul(roundv(surfaces.ng), surfaces.offset);
+
+    floatv3 emitted = background;
+    Scattering sent = {d, d, same3((float3)(0.0f)), same3((float3)(0.0f))};
+    uintv reflected_start = primitive;
+    intv shadow_rays = (intv)(0);
+    for (uint rest = lane_bits(hit); rest != 0u;) {
+        const uint material_id = ((const uint*)&surfaces.material)[lowest_lane(rest)];
+        const global DeviceMaterial* material = work->materials + material_id;
+        const intv lanes = hit & (surfaces.material == material_id);
+        const bool first = rest == lane_bits(hit);
+        rest &= ~lane_bits(lanes);
+        const realv3 ns = material->flags & SAHL_MATERIAL_TWO_SIDED ? facing : surfaces.ns;
+        const SurfaceColors colors =
+            surface_colors(&work->shapes, material, work->textures, &surfaces, primitive);
+        emitted = where(lanes, mul(weight, colors.emitted), emitted);
+        shadow_rays += lanes & shade_lights(work, i, material, &colors, position, roundv(ns),
+                                            roundv(negated(d)), weight, lanes, first);
+        if (work->spawn) {
+            const Scattering s = scatter(material, colors.reflection, &surfaces, ns, facing, d);
+            sent.reflected = where(lanes, s.reflected, sent.reflected);
+            sent.transmitted = where(lanes, s.transmitted, sent.transmitted);
+            sent.kr = where(lanes, s.kr, sent.kr);
+            sent.kt = where(lanes, s.kt, sent.kt);
+            if (material->flags & SAHL_MATERIAL_ATTENUATES) {
+                reflected_start |= as_uintv(lanes) & SAHL_RAY_ATTENUATED;
+            }
+        }
+    }
+
+    store_soa3v(work->contributions, 0u, capacity, i, emitted);
+    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i, position);
+    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
+    const intv reflects = hit & nonzerov(sent.kr), transmits = hit & nonzerov(sent.kt);
+    if (lane_bits(reflects) != 0u) {
+        store_rays(work->children, work->child_ids, capacity, i,
+                   offset_origins(position, offset, roundv(sent.reflected)), surfaces.position,
+                   sent.reflected, reflected_start, instance, mul(weight, sent.kr), pixel);
+    }
+    if (lane_bits(transmits) != 0u) {
+        store_rays(work->children + (size_t)SAHL_RAY_FLOATS * capacity,
+                   work->child_ids + (size_t)SAHL_RAY_UINTS * capacity, capacity, i,
+                   offset_origins(position, offset, roundv(sent.transmitted)), surfaces.position,
+                   sent.transmitted, primitive, instance, mul(weight, sent.kt), pixel);
+    }
+    vstorev(as_uintv(shadow_rays) * SAHL_OUTCOME_SHADOW_RAY | (as_uintv(reflects) & SAHL_OUTCOME_REFLECTED) |
+                (as_uintv(transmits) & SAHL_OUTCOME_TRANSMITTED),
+            work->outcomes + i);
 }
 
 kernel void shade(const global DevicePrimitive* primitives, const global float* shape_data,
@@ -71,56 +182,24 @@ kernel void shade(const global DevicePrimitive* primitives, const global float* 
                   global uint* contribution_pixels, global float* shadow_surfaces, global float* shadow_light,
                   global float* children, global uint* child_ids, global uint* outcomes, const uint capacity,
                   const uint count, const uint spawn) {
-    const Shapes shapes = {primitives, shape_data, instances};
-    global float* transmitted_rays = children + (size_t)SAHL_RAY_FLOATS * capacity;
-    global uint* transmitted_ids = child_ids + (size_t)SAHL_RAY_UINTS * capacity;
-    SAHL_FOR_EACH_RAY(i, count) {
-        const uint pixel = ray_ids[(size_t)SAHL_RAY_PIXEL * capacity + i];
-        const uint primitive = hit_ids[(size_t)SAHL_HIT_PRIMITIVE * capacity + i];
-        const uint instance = hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i];
-        const float3 hit = load_soa3(hits, SAHL_HIT_T, capacity, i);
-        const float3 weight =
-            attenuated_weight(&shapes, materials, load_soa3(rays, SAHL_RAY_WEIGHT, capacity, i),
-                              ray_ids[(size_t)SAHL_RAY_EXCLUDE * capacity + i], hit.x);
-        contribution_pixels[i] = pixel;
-        if (primitive == SAHL_NO_PRIMITIVE) {
-            store_soa3(contributions, 0u, capacity, i,
-                       weight * (float3)(scene.background[0], scene.background[1], scene.background[2]));
-            outcomes[i] = 0u;
-            continue;
-        }
-        const real3 d = load_soa3_real(rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
-        const real3 origin = load_soa3_real(rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
-        const Surface surface = surface_at(&shapes, instance, primitive, origin, d, hit.x, hit.y, hit.z);
-        const global DeviceMaterial* material = materials + surface.material;
-        const real3 facing = dot3_real(surface.ns, d) > (real)0 ? -surface.ns : surface.ns;
-        const real3 ns = material->flags & SAHL_MATERIAL_TWO_SIDED ? facing : surface.ns;
-        const SurfaceColors colors = surface_colors(&shapes, material, textures, &surface, primitive);
-        const float3 position = round3(surface.position);
-        const float3 offset = round3(surface.ng) * surface.offset;
-
-        store_soa3(contributions, 0u, capacity, i, weight * colors.emitted);
-        store_soa3(shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i, position);
-        store_soa3(shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
-        uint outcome =
-            SAHL_OUTCOME_SHADOW_RAY * shade_lights(lights, scene.light_count, material, &colors, position,
-                                                   round3(ns), round3(-d), weight, shadow_light, capacity, i);
-        if (spawn) {
-            const Scattering s = scatter(material, colors.reflection, &surface, ns, facing, d);
-            if (is_nonzero(s.kr)) {
-                store_ray(children, child_ids, capacity, i,
-                          offset_origin(position, offset, round3(s.reflected)), surface.position, s.reflected,
-                          primitive | (material->flags & SAHL_MATERIAL_ATTENUATES ? SAHL_RAY_ATTENUATED : 0u),
-                          instance, weight * s.kr, pixel);
-                outcome |= SAHL_OUTCOME_REFLECTED;
-            }
-            if (is_nonzero(s.kt)) {
-                store_ray(transmitted_rays, transmitted_ids, capacity, i,
-                          offset_origin(position, offset, round3(s.transmitted)), surface.position,
-                          s.transmitted, primitive, instance, weight * s.kt, pixel);
-                outcome |= SAHL_OUTCOME_TRANSMITTED;
-            }
-        }
-        outcomes[i] = outcome;
-    }
+    const ShadeWork work = {{primitives, shape_data, instances},
+                            materials,
+                            textures,
+                            lights,
+                            &scene,
+                            rays,
+                            ray_ids,
+                            hits,
+                            hit_ids,
+                            contributions,
+                            contribution_pixels,
+                            shadow_surfaces,
+                            shadow_light,
+                            children,
+                            child_ids,
+                            outcomes,
+                            capacity,
+                            count,
+                            spawn};
+    SAHL_FOR_EACH_GROUP(i, count) { shade_group(&work, i); }
 }

@@ -14,14 +14,20 @@ kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leave
     const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
     const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
                              shadow_light, outcomes,  contributions, capacity};
-    SAHL_FOR_EACH_RAY(i, count) {
-        float3 brought;
+    SAHL_FOR_EACH_GROUP(i, count) {
         for (uint l = 0; l < scene.light_count; ++l) {
-            if (has_shadow_ray(&work, l, i, &brought)) {
-                const Ray ray = ray_to_light(&work, l, i);
-                const float t_max = shadow_t_max(lights + l);
-                add_light(&work, i,
-                          brought * transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));
+            const float t_max = shadow_t_max(lights + l);
+            uint lanes = lanes_to_light(&work, l, i, count);
+            if (lanes == 0u) {
+                continue;
+            }
+            const RayLanes rays = rays_to_light(&work, l, i);
+            for (; lanes != 0u; lanes &= lanes - 1u) {
+                const Ray ray = ray_of_lane(&rays, lowest_lane(lanes));
+                const uint k = i + lowest_lane(lanes);
+                add_light(&work, k,
+                          brought_light(&work, l, k) *
+                              transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));
             }
         }
     }

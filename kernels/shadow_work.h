@@ -21,25 +21,30 @@ typedef struct {
     uint capacity;
 } ShadowWork;
 
-/// Whether lamp `l` has a shadow ray from hit i; *brought: what it would bring.
-static inline bool has_shadow_ray(const ShadowWork* work, uint l, uint i, float3* brought) {
-    if (work->outcomes[i] < SAHL_OUTCOME_SHADOW_RAY) {
-        return false;
-    }
-    *brought = load_soa3(work->light, 3u * l, work->capacity, i);
-    return is_nonzero(*brought);
+/// The light that lamp `l` would bring to hit i.
+static inline float3 brought_light(const ShadowWork* work, uint l, uint i) {
+    return load_soa3(work->light, 3u * l, work->capacity, i);
 }
 
-static inline Ray ray_to_light(const ShadowWork* work, uint l, uint i) {
-    const float3 position = load_soa3(work->surfaces, SAHL_SURFACE_POSITION, work->capacity, i);
-    const float3 offset = load_soa3(work->surfaces, SAHL_SURFACE_OFFSET, work->capacity, i);
+/// Of hits i to i + SAHL_LANES - 1 before `end`, bits of those to which lamp `l` would bring light.
+static inline uint lanes_to_light(const ShadowWork* work, uint l, uint i, uint end) {
+    const intv have =
+        (vloadv(work->outcomes + i) >= SAHL_OUTCOME_SHADOW_RAY) & (lane_numbers() < (intv)((int)(end - i)));
+    return lane_bits(have) == 0u
+               ? 0u
+               : lane_bits(have & nonzerov(load_soa3v(work->light, 3u * l, work->capacity, i)));
+}
+
+static inline RayLanes rays_to_light(const ShadowWork* work, uint l, uint i) {
+    const floatv3 position = load_soa3v(work->surfaces, SAHL_SURFACE_POSITION, work->capacity, i);
+    const floatv3 offset = load_soa3v(work->surfaces, SAHL_SURFACE_OFFSET, work->capacity, i);
     const global DeviceLight* light = work->lights + l;
-    Ray ray;
-    ray.origin = offset_origin(position, offset, vector_to_light(light, position));
-    ray.direction = vector_to_light(light, ray.origin);
-    ray.exclude = work->hit_ids[(size_t)SAHL_HIT_PRIMITIVE * work->capacity + i];
-    ray.instance = work->hit_ids[(size_t)SAHL_HIT_INSTANCE * work->capacity + i];
-    return ray;
+    RayLanes rays;
+    rays.origin = offset_origins(position, offset, vectors_to_light(light, position));
+    rays.direction = vectors_to_light(light, rays.origin);
+    rays.primitive = load_idsv(work->hit_ids, SAHL_HIT_PRIMITIVE, work->capacity, i);
+    rays.instance = load_idsv(work->hit_ids, SAHL_HIT_INSTANCE, work->capacity, i);
+    return rays;
 }
 
 /// The part of the light that comes through along `ray` up to t_max, which meets SAHL_HIT_* `occlusion`: 0
@@ -75,13 +80,16 @@ static inline void add_light(const ShadowWork* work, uint i, float3 light) {
 static inline void gather_shadow_rays(const ShadowWork* work, uint l, uint first, uint end, ShadowRays* list,
                                       uint* hits) {
     const float t_max = shadow_t_max(work->lights + l);
-    float3 brought;
     list->count = 0;
-    for (uint i = first; i < end; ++i) {
-        if (has_shadow_ray(work, l, i, &brought)) {
-            const Ray ray = ray_to_light(work, l, i);
-            hits[list->count] = i;
-            add_shadow_ray(list, &ray, t_max);
+    for (uint i = first; i < end; i += SAHL_LANES) {
+        const uint lanes = lanes_to_light(work, l, i, end);
+        if (lanes != 0u) {
+            const RayLanes rays = rays_to_light(work, l, i);
+            uint k = list->count;
+            for (uint rest = lanes; rest != 0u; rest &= rest - 1u) {
+                hits[k++] = i + lowest_lane(rest);
+            }
+            add_shadow_rays(list, &rays, lanes, t_max);
         }
     }
 }
@@ -90,11 +98,13 @@ static inline void gather_shadow_rays(const ShadowWork* work, uint l, uint first
 static inline void add_light_of_list(const Bvh* bvh, const ShadowWork* work, uint l, const ShadowRays* list,
                                      const uint* hits) {
     const float t_max = shadow_t_max(work->lights + l);
-    float3 brought;
     for (uint k = 0; k < list->count; ++k) {
-        const Ray ray = shadow_ray(list, k);
-        has_shadow_ray(work, l, hits[k], &brought);
-        add_light(work, hits[k], brought * transmittance(bvh, work, &ray, t_max, list->occlusion[k]));
+        if (list->occlusion[k] != SAHL_HIT_OPAQUE) {
+            const Ray ray = shadow_ray(list, k);
+            add_light(
+                work, hits[k],
+                brought_light(work, l, hits[k]) * transmittance(bvh, work, &ray, t_max, list->occlusion[k]));
+        }
     }
 }
 

@@ -44,6 +44,18 @@ static inline uint mask4(int4 lanes) {
 #endif
 }
 
+/// Lanes of a float8 comparison.
+static inline uint sign_bits8(int8 lanes) {
+#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
+    return (uint)__builtin_ia32_movmskps256(as_float8(lanes));
+#else
+    int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    int4 quarter = bits.lo | bits.hi;
+    int2 half_of_it = quarter.lo | quarter.hi;
+    return (uint)(half_of_it.x | half_of_it.y);
+#endif
+}
+
 #ifdef SAHL_AVX512
 
 // The immediates are predicates of vcmpps, ordered where that is a choice.
@@ -75,17 +87,6 @@ static inline uint mask16_le(float16 a, float16 b) { return less_equal16(a, b); 
 static inline uint mask16_ge(float16 a, float16 b) { return less_equal16(b, a); }
 
 #else
-
-#ifdef SAHL_AVX2
-static inline uint sign_bits8(int8 lanes) { return (uint)__builtin_ia32_movmskps256(as_float8(lanes)); }
-#else
-static inline uint sign_bits8(int8 lanes) {
-    int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-    int4 quarter = bits.lo | bits.hi;
-    int2 half_of_it = quarter.lo | quarter.hi;
-    return (uint)(half_of_it.x | half_of_it.y);
-}
-#endif
 
 typedef int16 Lanes16;
 SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return a == b; }

@@ -1,10 +1,13 @@
-// From a hit to the surface there: position and normals.
+// From hits to the surfaces there: positions and normals, of SAHL_LANES hits at a time.
+//
+// Neighbouring rays mostly hit shapes of the same kind. What each kind needs is computed for all lanes where
+// any has it, from the data of each lane's own primitive; lanes of other kinds borrow a primitive of this
+// one.
 #ifndef SAHL_SURFACE_H
 #define SAHL_SURFACE_H
 
 #include "kernels/device_types.h"
-#include "kernels/instance.h"
-#include "kernels/real.h"
+#include "kernels/lanes.h"
 
 /// What is known of all surfaces.
 typedef struct {
@@ -14,218 +17,309 @@ typedef struct {
 } Shapes;
 
 typedef struct {
-    real3 position;
-    real3 ng;      // unit geometric normal, outward or by the winding
-    real3 ns;      // unit shading normal, on ng's side
-    real3 shape;   // place on the shape in its own space: triangle u, v; else as device_types.h says
-    real t;        // of the ray
-    float offset;  // how far off the surface along ng rays start
-    uint material;
-} Surface;
+    realv3 position;
+    realv3 ng;      // unit geometric normals, outward or by the winding
+    realv3 ns;      // unit shading normals, on ng's side
+    realv3 shape;   // places on the shapes in their own spaces: triangle u, v; else as device_types.h says
+    realv t;        // of the rays
+    floatv offset;  // how far off the surface along ng rays start
+    uintv material;
+} Surfaces;
 
 // Rays start this many times the largest coordinate of their position and primitive away: a few
 // roundings of it, which single precision traversal needs.
 #define SAHL_OFFSET_SCALE 0x1p-21f
 
-/// Where a ray that leaves on `direction`'s side starts. Wächter and Binder 2019, "A Fast and
+/// Where rays that leave on `direction`'s side start. Wächter and Binder 2019, "A Fast and
 /// Robust Method for Avoiding Self-Intersection" (Ray Tracing Gems, ch. 6), scale by the
 /// position's own coordinates with a fixed floor near 0; here the primitive's coordinates set the
 /// scale, as they bound the rounding error (Pharr, Jakob, Humphreys 2016, sec. 3.9), so that no
 /// floor is needed and small scenes keep their proportions.
-static inline float3 offset_origin(float3 position, float3 offset, float3 direction) {
-    return dot3(offset, direction) < 0.0f ? position - offset : position + offset;
+static inline floatv3 offset_origins(floatv3 position, floatv3 offset, floatv3 direction) {
+    return where(dotv(offset, direction) < 0.0f, sub(position, offset), add(position, offset));
 }
 
-static inline real3 object_vector(const global float* m, real3 v) {
-    return (real3)(dot3_real(load3_real(m), v), dot3_real(load3_real(m + 6), v),
-                   dot3_real(load3_real(m + 12), v));
+/// Vectors in object space by the row-major matrices at m.
+static inline realv3 object_vectors(const LanePlaces* m, realv3 v) {
+    return (realv3){dotv(gather3_real(m, 0), v), dotv(gather3_real(m, 6), v), dotv(gather3_real(m, 12), v)};
 }
 
-/// A normal of object space in the world: times the transpose of object-from-world.
-static inline real3 world_normal(const global float* m, real3 n) {
-    return normalize3_real(load3_real(m) * n.x + load3_real(m + 6) * n.y + load3_real(m + 12) * n.z);
+/// Normals of object space in the world: times the transpose of object-from-world.
+static inline realv3 world_normals(const LanePlaces* m, realv3 n) {
+    return normalizev(
+        add(add(mul(gather3_real(m, 0), n.x), mul(gather3_real(m, 6), n.y)), mul(gather3_real(m, 12), n.z)));
 }
 
-/// The root of a x² + 2 b x + c next to 0; where rounding has made it complex, the vertex.
-static inline real root_near_zero(real a, real b, real c) {
-    real discriminant = b * b - a * c;
-    return discriminant > (real)0 ? -c / (b + copysign(sqrt(discriminant), b)) : -b / a;
+/// The roots of a x² + 2 b x + c next to 0; where rounding has made them complex, the vertex.
+static inline realv roots_near_zero(realv a, realv b, realv c) {
+    realv discriminant = b * b - a * c;
+    return where(discriminant > (real)0, -c / (b + copysign(sqrt(discriminant), b)), -b / a);
 }
 
-static inline Surface flat_surface(real3 origin, real3 direction, real3 normal, real3 anchor) {
-    Surface s;
-    s.t = dot3_real(normal, anchor - origin) / dot3_real(normal, direction);
+static inline Surfaces flat_surfaces(realv3 origin, realv3 direction, realv3 normal, realv3 anchor) {
+    Surfaces s;
+    s.t = dotv(normal, sub(anchor, origin)) / dotv(normal, direction);
     s.ng = normal;
     s.ns = normal;
-    s.shape = (real3)(0);
-    s.offset = max_abs3(round3(anchor));
+    s.shape = same3_real((real3)(0));
+    s.offset = max_absv(roundv(anchor));
     return s;
 }
 
-static inline Surface triangle_surface(const global float* data, bool smooth, real3 origin, real3 direction,
-                                       float u, float v) {
-    float3 a = load3(data), b = load3(data + 3), c = load3(data + 6);
-    real3 v0 = convert_real3(a), v1 = convert_real3(b), v2 = convert_real3(c);
-    Surface s = flat_surface(origin, direction, normalize3_real(cross3_real(v1 - v0, v2 - v0)), v0);
-    if (smooth) {
-        real3 n =
-            convert_real3(load3(data + 9) * (1.0f - u - v) + load3(data + 12) * u + load3(data + 15) * v);
-        real length2 = dot3_real(n, n);
-        s.ns = length2 > (real)0 ? n / sqrt(length2) : s.ng;
+/// Of triangles at `data`; those of the lanes `smooth` have normals behind their vertices, at `normals`.
+static inline Surfaces triangle_surfaces(const LanePlaces* data, const LanePlaces* normals, intv smooth,
+                                         realv3 origin, realv3 direction, floatv u, floatv v) {
+    floatv3 a = gather3(data, 0), b = gather3(data, 3), c = gather3(data, 6);
+    realv3 v0 = widen(a), v1 = widen(b), v2 = widen(c);
+    Surfaces s = flat_surfaces(origin, direction, normalizev(crossv(sub(v1, v0), sub(v2, v0))), v0);
+    if (lane_bits(smooth) != 0u) {
+        floatv3 sum = add(mul(gather3(normals, 0), 1.0f - u - v), mul(gather3(normals, 3), u));
+        realv3 n = widen(add(sum, mul(gather3(normals, 6), v)));
+        realv length2 = dotv(n, n);
+        s.ns = where(smooth, where(length2 > (real)0, div(n, sqrt(length2)), s.ng), s.ns);
     }
-    s.shape = (real3)((real)u, (real)v, (real)0);
-    s.offset = SAHL_MAX(SAHL_MAX(max_abs3(a), max_abs3(b)), max_abs3(c));
+    s.shape = (realv3){convert_realv(u), convert_realv(v), (realv)(0)};
+    floatv of_a = max_absv(a), of_b = max_absv(b), of_c = max_absv(c);
+    floatv larger = SAHL_MAX(of_a, of_b);
+    s.offset = SAHL_MAX(larger, of_c);
     return s;
 }
 
-static inline Surface polygon_surface(const global float* data, real3 origin, real3 direction) {
-    real3 anchor = load3_real(data + 6);
-    Surface s = flat_surface(origin, direction, load3_real(data), anchor);
-    real3 from_anchor = origin + direction * s.t - anchor;
-    s.shape = (real3)(dot3_real(load3_real(data + 14), from_anchor),
-                      dot3_real(load3_real(data + 20), from_anchor), (real)0);
+static inline Surfaces polygon_surfaces(const LanePlaces* data, realv3 origin, realv3 direction) {
+    realv3 anchor = gather3_real(data, 6);
+    Surfaces s = flat_surfaces(origin, direction, gather3_real(data, 0), anchor);
+    realv3 from_anchor = sub(add(origin, mul(direction, s.t)), anchor);
+    s.shape = (realv3){dotv(gather3_real(data, 14), from_anchor), dotv(gather3_real(data, 20), from_anchor),
+                       (realv)(0)};
     return s;
 }
 
-static inline Surface sphere_surface(const global float* data, real3 origin, real3 direction, real t) {
-    real3 center = load3_real(data);
-    real radius = load_real(data + 6);
-    real3 p = origin + direction * t - center;
-    real step = root_near_zero(dot3_real(direction, direction), dot3_real(p, direction),
-                               dot3_real(p, p) - radius * radius);
-    p += direction * step;
-    Surface s;
+static inline Surfaces sphere_surfaces(const LanePlaces* data, realv3 origin, realv3 direction, realv t) {
+    realv3 center = gather3_real(data, 0);
+    realv radius = gather_real(data, 6);
+    realv3 p = sub(add(origin, mul(direction, t)), center);
+    realv step =
+        roots_near_zero(dotv(direction, direction), dotv(p, direction), dotv(p, p) - radius * radius);
+    p = add(p, mul(direction, step));
+    Surfaces s;
     s.t = t + step;
-    s.ng = normalize3_real(p);
+    s.ng = normalizev(p);
     s.ns = s.ng;
-    s.shape = p / radius;
-    s.offset = max_abs3(round3(center)) + (float)radius;
+    s.shape = div(p, radius);
+    s.offset = max_absv(roundv(center)) + convert_floatv(radius);
     return s;
 }
 
-/// A place on a shape of unit size: how far along the ray from the hit, and the normal there.
+/// Places on shapes of unit size: how far along the rays from the hits, and the normals there.
 typedef struct {
-    real step;
-    real3 normal;
-} ShapePoint;
+    realv step;
+    realv3 normal;
+} ShapePoints;
 
-/// Of the unit sphere, or of x² + y² = (1 + slope z)² for cones, what is nearest to p along d.
-static inline ShapePoint quadric_point(real3 p, real3 d, bool cone, real slope) {
-    real w = cone ? (real)1 + slope * p.z : (real)1, wd = cone ? slope * d.z : (real)0;
-    real pz = cone ? (real)0 : p.z, dz = cone ? (real)0 : d.z;
-    ShapePoint s;
-    s.step =
-        root_near_zero(d.x * d.x + d.y * d.y + dz * dz - wd * wd, p.x * d.x + p.y * d.y + pz * dz - w * wd,
-                       p.x * p.x + p.y * p.y + pz * pz - w * w);
-    p += d * s.step;
-    s.normal = (real3)(p.x, p.y, cone ? -slope * ((real)1 + slope * p.z) : p.z);
+static inline ShapePoints where_points(real_maskv mask, ShapePoints a, ShapePoints b) {
+    return (ShapePoints){where(mask, a.step, b.step), where(mask, a.normal, b.normal)};
+}
+
+/// Of unit spheres, what is nearest to p along d.
+static inline ShapePoints ellipsoid_points(realv3 p, realv3 d) {
+    ShapePoints s;
+    s.step = roots_near_zero(dotv(d, d), dotv(p, d), dotv(p, p) - (real)1);
+    s.normal = add(p, mul(d, s.step));
     return s;
 }
 
-/// Of the plane n·x = offset; infinitely far when the ray runs along it.
-static inline ShapePoint plane_point(real3 p, real3 d, real3 n, real offset) {
-    real nd = dot3_real(n, d);
-    ShapePoint s;
-    s.step = nd != (real)0 ? (offset - dot3_real(n, p)) / nd : (real)INFINITY;
+/// Of x² + y² = (1 + slope z)², what is nearest to p along d.
+static inline ShapePoints cone_points(realv3 p, realv3 d, realv slope) {
+    realv w = (real)1 + slope * p.z, wd = slope * d.z;
+    ShapePoints s;
+    s.step = roots_near_zero(d.x * d.x + d.y * d.y - wd * wd, p.x * d.x + p.y * d.y - w * wd,
+                             p.x * p.x + p.y * p.y - w * w);
+    p = add(p, mul(d, s.step));
+    s.normal = (realv3){p.x, p.y, -slope * ((real)1 + slope * p.z)};
+    return s;
+}
+
+/// Of planes n·x = offset; infinitely far where the ray runs along it.
+static inline ShapePoints plane_points(realv3 p, realv3 d, realv3 n, real offset) {
+    realv nd = dotv(n, d);
+    ShapePoints s;
+    s.step = where(nd != (real)0, ((realv)(offset)-dotv(n, p)) / nd, (realv)(INFINITY));
     s.normal = n;
     return s;
 }
 
-/// Of a solid cone near p, which is within rounding of its surface: on the cap where the ray meets
+/// Of solid cones near p, which is within rounding of their surface: on the cap where the ray meets
 /// that within its outline and nearer than the side.
-static inline ShapePoint solid_cone_point(real3 p, real3 d, real slope) {
-    ShapePoint bottom = plane_point(p, d, (real3)(0, 0, -1), (real)0);
-    ShapePoint top = plane_point(p, d, (real3)(0, 0, 1), (real)1);
-    ShapePoint cap = fabs(bottom.step) < fabs(top.step) ? bottom : top;
-    ShapePoint side = quadric_point(p, d, true, slope);
-    real3 on_cap = p + d * cap.step;
-    real w = (real)1 + slope * on_cap.z;
-    bool within = on_cap.x * on_cap.x + on_cap.y * on_cap.y < w * w;
-    bool cap_nearer = !(fabs(side.step) <= fabs(cap.step));
-    return within && cap_nearer ? cap : side;
+static inline ShapePoints solid_cone_points(realv3 p, realv3 d, realv slope) {
+    ShapePoints bottom = plane_points(p, d, same3_real((real3)(0, 0, -1)), (real)0);
+    ShapePoints top = plane_points(p, d, same3_real((real3)(0, 0, 1)), (real)1);
+    ShapePoints cap = where_points(fabs(bottom.step) < fabs(top.step), bottom, top);
+    ShapePoints side = cone_points(p, d, slope);
+    realv3 on_cap = add(p, mul(d, cap.step));
+    realv w = (real)1 + slope * on_cap.z;
+    real_maskv within = on_cap.x * on_cap.x + on_cap.y * on_cap.y < w * w;
+    real_maskv cap_nearer = ~(fabs(side.step) <= fabs(cap.step));
+    return where_points(within & cap_nearer, cap, side);
 }
 
-/// Of the box -1..1 near p, which is within rounding of its surface: the nearest face along the ray.
-static inline ShapePoint box_point(real3 p, real3 d) {
-    real3 side = (real3)(copysign((real)1, p.x), copysign((real)1, p.y), copysign((real)1, p.z));
-    ShapePoint x = plane_point(p, d, (real3)(side.x, 0, 0), (real)1);
-    ShapePoint y = plane_point(p, d, (real3)(0, side.y, 0), (real)1);
-    ShapePoint z = plane_point(p, d, (real3)(0, 0, side.z), (real)1);
-    ShapePoint nearest = fabs(y.step) < fabs(x.step) ? y : x;
-    return fabs(z.step) < fabs(nearest.step) ? z : nearest;
+/// Of boxes -1..1 near p, which is within rounding of their surface: the nearest face along the ray.
+static inline ShapePoints box_points(realv3 p, realv3 d) {
+    const realv one = (realv)(1), none = (realv)(0);
+    ShapePoints x = plane_points(p, d, (realv3){copysign(one, p.x), none, none}, (real)1);
+    ShapePoints y = plane_points(p, d, (realv3){none, copysign(one, p.y), none}, (real)1);
+    ShapePoints z = plane_points(p, d, (realv3){none, none, copysign(one, p.z)}, (real)1);
+    ShapePoints nearest = where_points(fabs(y.step) < fabs(x.step), y, x);
+    return where_points(fabs(z.step) < fabs(nearest.step), z, nearest);
 }
 
-/// Shapes with an object space of their own.
-static inline Surface object_surface(uint kind, const global float* data, real3 origin, real3 direction,
-                                     real t) {
-    real3 center = load3_real(data + 18);
-    real3 p = object_vector(data, origin + direction * t - center);
-    real3 d = object_vector(data, direction);
-    ShapePoint point;
-    switch (kind) {
-        case SAHL_KIND_DISC:
-            point = plane_point(p, d, (real3)(0, 0, 1), (real)0);
-            break;
-        case SAHL_KIND_BOX:
-            point = box_point(p, d);
-            break;
-        case SAHL_KIND_SOLID_CONE:
-            point = solid_cone_point(p, d, load_real(data + 24));
-            break;
-        case SAHL_KIND_CONE:
-            point = quadric_point(p, d, true, load_real(data + 24));
-            break;
-        default:
-            point = quadric_point(p, d, false, (real)0);
-            break;
+/// A bit for each kind that lanes have.
+static inline uint kinds_present(uintv kind) {
+    return 1u << kind.s0 | 1u << kind.s1 | 1u << kind.s2 | 1u << kind.s3 | 1u << kind.s4 | 1u << kind.s5 |
+           1u << kind.s6 | 1u << kind.s7;
+}
+
+/// Of shapes with an object space of their own. `solid`: lanes' numbers of the slope, where they have one.
+static inline Surfaces object_surfaces(uintv kind, uint present, const LanePlaces* data,
+                                       const LanePlaces* slopes, realv3 origin, realv3 direction, realv t) {
+    realv3 center = gather3_real(data, 18);
+    realv3 p = object_vectors(data, sub(add(origin, mul(direction, t)), center));
+    realv3 d = object_vectors(data, direction);
+    ShapePoints points = ellipsoid_points(p, d);
+    if (present & 1u << SAHL_KIND_DISC) {
+        points = where_points(convert_real_maskv(kind == SAHL_KIND_DISC),
+                              plane_points(p, d, same3_real((real3)(0, 0, 1)), (real)0), points);
     }
-    Surface s;
-    s.t = t + point.step;
-    s.ng = world_normal(data, point.normal);
+    if (present & 1u << SAHL_KIND_BOX) {
+        points = where_points(convert_real_maskv(kind == SAHL_KIND_BOX), box_points(p, d), points);
+    }
+    if (present & 1u << SAHL_KIND_SOLID_CONE) {
+        points = where_points(convert_real_maskv(kind == SAHL_KIND_SOLID_CONE),
+                              solid_cone_points(p, d, gather_real(slopes, 0)), points);
+    }
+    if (present & 1u << SAHL_KIND_CONE) {
+        points = where_points(convert_real_maskv(kind == SAHL_KIND_CONE),
+                              cone_points(p, d, gather_real(slopes, 0)), points);
+    }
+    Surfaces s;
+    s.t = t + points.step;
+    s.ng = world_normals(data, points.normal);
     s.ns = s.ng;
-    s.shape = p + d * point.step;
-    s.offset = max_abs3(round3(center));
+    s.shape = add(p, mul(d, points.step));
+    s.offset = max_absv(roundv(center));
     return s;
 }
 
-/// The surface of primitive `primitive` of `instance` where a ray hits it at about `t`; u, v:
-/// barycentrics of a triangle.
-static inline Surface surface_at(const Shapes* shapes, uint instance, uint primitive, real3 origin,
-                                 real3 direction, float t, float u, float v) {
-    const global DevicePrimitive* p = shapes->primitives + primitive;
-    const global float* data = shapes->shape_data + p->data;
-    const global DeviceInstance* placed = shapes->instances + (instance == SAHL_WORLD ? 0u : instance - 1u);
-    real3 o = origin, d = direction;
-    if (instance != SAHL_WORLD) {
-        o = group_from_world_point(placed, origin);
-        d = group_from_world_vector(placed, direction);
+static inline Surfaces where_surfaces(intv mask, Surfaces a, Surfaces b) {
+    Surfaces s;
+    s.ng = where(mask, a.ng, b.ng);
+    s.ns = where(mask, a.ns, b.ns);
+    s.shape = where(mask, a.shape, b.shape);
+    s.t = where(mask, a.t, b.t);
+    s.offset = where(mask, a.offset, b.offset);
+    return s;
+}
+
+/// Row `row` of the instances' object_from_world at `rows`: without, and the translation.
+static inline realv3 instance_rows(const LanePlaces* rows, uint row) {
+    return add(widen(gather3(rows, 8u * row)), widen(gather3(rows, 8u * row + 4u)));
+}
+static inline realv instance_shifts(const LanePlaces* rows, uint row) {
+    return convert_realv(gather(rows, 8u * row + 3u)) + convert_realv(gather(rows, 8u * row + 7u));
+}
+
+static inline realv3 group_from_world_vectors(const LanePlaces* rows, realv3 v) {
+    return (realv3){dotv(instance_rows(rows, 0), v), dotv(instance_rows(rows, 1), v),
+                    dotv(instance_rows(rows, 2), v)};
+}
+
+static inline realv3 group_from_world_points(const LanePlaces* rows, realv3 p) {
+    return add(group_from_world_vectors(rows, p),
+               (realv3){instance_shifts(rows, 0), instance_shifts(rows, 1), instance_shifts(rows, 2)});
+}
+
+/// Normals of the groups in the world, of any length: times the transpose of object_from_world.
+static inline realv3 world_from_group_normals(const LanePlaces* rows, realv3 n) {
+    return add(add(mul(instance_rows(rows, 0), n.x), mul(instance_rows(rows, 1), n.y)),
+               mul(instance_rows(rows, 2), n.z));
+}
+
+/// The lanes' own values where `mask` holds, elsewhere that of the first lane where it does.
+static inline uintv borrowed(intv mask, uintv value) {
+    return mask ? value : (uintv)(((const uint*)&value)[lowest_lane(lane_bits(mask))]);
+}
+
+/// surfaces_at() in the space of the primitives, without the position.
+static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, realv3 origin,
+                                         realv3 direction, floatv t, floatv u, floatv v) {
+#define SAHL_OF_PRIMITIVES(field)                                                                       \
+    (uintv)(p[primitive.s0].field, p[primitive.s1].field, p[primitive.s2].field, p[primitive.s3].field, \
+            p[primitive.s4].field, p[primitive.s5].field, p[primitive.s6].field, p[primitive.s7].field)
+    const global DevicePrimitive* p = shapes->primitives;
+    const uintv kind = SAHL_OF_PRIMITIVES(kind), data = SAHL_OF_PRIMITIVES(data);
+    const uint present = kinds_present(kind);
+    const realv t_real = convert_realv(t);
+    Surfaces s = {};
+    intv others = (intv)(-1);
+    if (present & 1u << SAHL_KIND_TRIANGLE) {
+        const intv these = kind == SAHL_KIND_TRIANGLE;
+        const intv smooth = these & ((SAHL_OF_PRIMITIVES(flags) & SAHL_PRIMITIVE_SMOOTH) != 0u);
+        const uintv at = borrowed(these, data);
+        const LanePlaces vertices = places(shapes->shape_data, at);
+        const LanePlaces normals = places(shapes->shape_data, smooth ? at + 9u : at);
+        s = triangle_surfaces(&vertices, &normals, smooth, origin, direction, u, v);
+        others &= ~these;
     }
-    Surface s;
-    switch (p->kind) {
-        case SAHL_KIND_TRIANGLE:
-            s = triangle_surface(data, (p->flags & SAHL_PRIMITIVE_SMOOTH) != 0u, o, d, u, v);
-            break;
-        case SAHL_KIND_POLYGON:
-            s = polygon_surface(data, o, d);
-            break;
-        case SAHL_KIND_SPHERE:
-            s = sphere_surface(data, o, d, (real)t);
-            break;
-        default:
-            s = object_surface(p->kind, data, o, d, (real)t);
-            break;
+    if (present & 1u << SAHL_KIND_POLYGON) {
+        const intv these = kind == SAHL_KIND_POLYGON;
+        const LanePlaces at = places(shapes->shape_data, borrowed(these, data));
+        s = where_surfaces(these, polygon_surfaces(&at, origin, direction), s);
+        others &= ~these;
     }
-    s.offset = SAHL_OFFSET_SCALE * SAHL_MAX(s.offset, max_abs3(round3(o + d * s.t)));
-    s.position = origin + direction * s.t;
-    s.material = p->material;
-    if (instance != SAHL_WORLD) {
+    if (present & 1u << SAHL_KIND_SPHERE) {
+        const intv these = kind == SAHL_KIND_SPHERE;
+        const LanePlaces at = places(shapes->shape_data, borrowed(these, data));
+        s = where_surfaces(these, sphere_surfaces(&at, origin, direction, t_real), s);
+        others &= ~these;
+    }
+    if (lane_bits(others) != 0u) {
+        const uintv offset = borrowed(others, data);
+        const intv sloped = (kind == SAHL_KIND_CONE) | (kind == SAHL_KIND_SOLID_CONE);
+        const LanePlaces at = places(shapes->shape_data, offset);
+        const LanePlaces slopes = places(shapes->shape_data, sloped ? offset + 24u : offset);
+        s = where_surfaces(others, object_surfaces(kind, present, &at, &slopes, origin, direction, t_real),
+                           s);
+    }
+    s.material = SAHL_OF_PRIMITIVES(material);
+#undef SAHL_OF_PRIMITIVES
+    return s;
+}
+
+/// The surfaces of `primitive` of `instance` where rays hit them at about `t`; u, v: barycentrics of
+/// triangles. Of the lanes `hit`, of which there is one at least.
+static inline Surfaces surfaces_at(const Shapes* shapes, intv hit, uintv instance, uintv primitive,
+                                   realv3 origin, realv3 direction, floatv t, floatv u, floatv v) {
+    const intv placed = hit & (instance != SAHL_WORLD);
+    realv3 o = origin, d = direction;
+    LanePlaces rows;
+    if (lane_bits(placed) != 0u) {
+        rows = places((const global float*)shapes->instances,
+                      (borrowed(placed, instance) - 1u) * (uint)(sizeof(DeviceInstance) / sizeof(float)));
+        o = where(placed, group_from_world_points(&rows, origin), origin);
+        d = where(placed, group_from_world_vectors(&rows, direction), direction);
+    }
+    Surfaces s = surfaces_of_kinds(shapes, borrowed(hit, primitive), o, d, t, u, v);
+    floatv of_hit = max_absv(roundv(add(o, mul(d, s.t))));
+    s.offset = SAHL_OFFSET_SCALE * SAHL_MAX(s.offset, of_hit);
+    s.position = add(origin, mul(direction, s.t));
+    if (lane_bits(placed) != 0u) {
         // A step h along the world's normal takes h |n| along the group's: the same distance in roundings.
-        real3 n = world_from_group_normal(placed, s.ng);
-        real length = sqrt(dot3_real(n, n));
-        s.ng = n / length;
-        s.ns = normalize3_real(world_from_group_normal(placed, s.ns));
-        s.offset =
-            SAHL_MAX((float)((real)s.offset / length), SAHL_OFFSET_SCALE * max_abs3(round3(s.position)));
+        realv3 n = world_from_group_normals(&rows, s.ng);
+        realv length = sqrt(dotv(n, n));
+        s.ng = where(placed, div(n, length), s.ng);
+        s.ns = where(placed, normalizev(world_from_group_normals(&rows, s.ns)), s.ns);
+        floatv of_position = SAHL_OFFSET_SCALE * max_absv(roundv(s.position));
+        floatv of_group = convert_floatv(convert_realv(s.offset) / length);
+        s.offset = where(placed, SAHL_MAX(of_group, of_position), s.offset);
     }
     return s;
 }

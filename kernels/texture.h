@@ -1,4 +1,4 @@
-// Procedural colours: patterns of the position or of (u, v).
+// Procedural colours: patterns of the positions or of (u, v), SAHL_LANES places on one material.
 #ifndef SAHL_TEXTURE_H
 #define SAHL_TEXTURE_H
 
@@ -69,42 +69,66 @@ static inline real3 surface_uv(const global DevicePrimitive* primitive, const gl
     }
 }
 
-static inline bool is_odd(real cell) { return cell - (real)2 * floor(cell * (real)0.5) != (real)0; }
+static inline real_maskv is_odd(realv cell) { return cell - (real)2 * floor(cell * (real)0.5) != (real)0; }
 
-static inline float3 texture_color(const global DeviceTexture* texture, real3 p) {
-    float3 a = load3(texture->color0), b = load3(texture->color1);
-    real3 q = p - load3_real(texture->origin), extent = load3_real(texture->extent);
+static inline realv cells(realv x, real extent) { return extent != (real)0 ? floor(x / extent) : (realv)(0); }
+
+static inline floatv3 texture_colors(const global DeviceTexture* texture, realv3 p) {
+    floatv3 a = same3(load3(texture->color0)), b = same3(load3(texture->color1));
+    real3 extent = load3_real(texture->extent);
+    realv3 q = sub(p, same3_real(load3_real(texture->origin)));
     if (texture->pattern == SAHL_PATTERN_GRADIENT) {
-        float x = (float)(dot3_real(q, extent) / dot3_real(extent, extent));
-        x = x > 0.0f ? SAHL_MIN(x, 1.0f) : 0.0f;
-        return a * (1.0f - x) + b * x;
+        floatv x = convert_floatv(dotv(q, same3_real(extent)) / dot3_real(extent, extent));
+        x = where(x > 0.0f, SAHL_MIN(x, (floatv)(1.0f)), (floatv)(0.0f));
+        return add(mul(a, 1.0f - x), mul(b, x));
     }
-    real cell = (extent.x != (real)0 ? floor(q.x / extent.x) : (real)0) +
-                (extent.y != (real)0 ? floor(q.y / extent.y) : (real)0) +
-                (extent.z != (real)0 ? floor(q.z / extent.z) : (real)0);
-    return is_odd(cell) ? b : a;
+    return where(convert_intv(is_odd(cells(q.x, extent.x) + cells(q.y, extent.y) + cells(q.z, extent.z))), b,
+                 a);
 }
 
-/// A material's colours at one place.
+/// (u, v, 0) of the lanes' hits; each by itself, as textures in these coordinates are few.
+SAHL_NOINLINE realv3 surface_uvs(const Shapes* shapes, const Surfaces* surfaces, uintv primitive) {
+    const uint* id = (const uint*)&primitive;
+    const real *x = (const real*)&surfaces->shape.x, *y = (const real*)&surfaces->shape.y,
+               *z = (const real*)&surfaces->shape.z;
+    realv3 uv = same3_real((real3)(0));
+    for (uint k = 0; k < SAHL_LANES; ++k) {
+        const global DevicePrimitive* p = shapes->primitives + id[k];
+        real3 of_lane = surface_uv(p, shapes->shape_data + p->data, (real3)(x[k], y[k], z[k]));
+        ((real*)&uv.x)[k] = of_lane.x;
+        ((real*)&uv.y)[k] = of_lane.y;
+    }
+    return uv;
+}
+
+/// A material's colours at the lanes' places.
 typedef struct {
-    float3 emitted;  // ambient light sent back, and emission
-    float3 diffuse, specular, reflection;
+    floatv3 emitted;  // ambient light sent back, and emission
+    floatv3 diffuse, specular, reflection;
 } SurfaceColors;
 
+/// color times a texture's colours there, if it has a texture.
+static inline floatv3 textured(floatv3 color, const global DeviceTexture* textures, uint texture,
+                               const Shapes* shapes, const Surfaces* surfaces, uintv primitive) {
+    if (texture == SAHL_NO_TEXTURE) {
+        return color;
+    }
+    const bool in_uv = textures[texture].space == SAHL_TEXTURE_UV;
+    return mul(color, texture_colors(textures + texture,
+                                     in_uv ? surface_uvs(shapes, surfaces, primitive) : surfaces->position));
+}
+
+/// `primitive`: of each lane one that exists.
 static inline SurfaceColors surface_colors(const Shapes* shapes, const global DeviceMaterial* material,
-                                           const global DeviceTexture* textures, const Surface* surface,
-                                           uint primitive) {
-    float3 ambient = load3(material->ambient), emission = load3(material->emission);
+                                           const global DeviceTexture* textures, const Surfaces* surfaces,
+                                           uintv primitive) {
+    floatv3 ambient = same3(load3(material->ambient)), emission = same3(load3(material->emission));
     SurfaceColors colors;
-    colors.diffuse = load3(material->diffuse);
-    colors.specular = load3(material->specular);
-    colors.reflection = load3(material->reflection);
+    colors.diffuse = same3(load3(material->diffuse));
+    colors.specular = same3(load3(material->specular));
+    colors.reflection = same3(load3(material->reflection));
     if (material->flags & SAHL_MATERIAL_TEXTURED) {
-        const global DevicePrimitive* p = shapes->primitives + primitive;
-        real3 places[2] = {surface->position, surface_uv(p, shapes->shape_data + p->data, surface->shape)};
-#define SAHL_TEXTURED(color, index)       \
-    ((index) == SAHL_NO_TEXTURE ? (color) \
-                                : (color)*texture_color(textures + (index), places[textures[index].space]))
+#define SAHL_TEXTURED(color, index) textured(color, textures, index, shapes, surfaces, primitive)
         ambient = SAHL_TEXTURED(ambient, material->ambient_texture);
         emission = SAHL_TEXTURED(emission, material->emission_texture);
         colors.diffuse = SAHL_TEXTURED(colors.diffuse, material->diffuse_texture);
@@ -112,7 +136,7 @@ static inline SurfaceColors surface_colors(const Shapes* shapes, const global De
         colors.reflection = SAHL_TEXTURED(colors.reflection, material->reflection_texture);
 #undef SAHL_TEXTURED
     }
-    colors.emitted = ambient + emission;
+    colors.emitted = add(ambient, emission);
     return colors;
 }
 

@@ -14,18 +14,13 @@ Launch per_ray(std::uint32_t rays_per_item, std::uint32_t generation, std::uint3
     return {(count + rays_per_item - 1) / rays_per_item, generation, count, rays_per_item};
 }
 
-Launch per_ray(const Wavefront& wavefront, const WaitingBatch& in_work) {
-    return per_ray(wavefront.device.rays_per_item(), in_work.generation, in_work.count);
-}
-
 Launch per_block(const WaitingBatch& in_work) {
     return {compact_blocks(in_work.count), in_work.generation, in_work.count, SAHL_COMPACT_BLOCK};
 }
 
-/// The launch of a kernel that traces rays one by one, or together as many as its work-items take.
-Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, std::uint32_t rays_of_packets,
-                      std::uint32_t rays_of_streams) {
-    std::uint32_t rays = wavefront.device.rays_per_item();
+/// The launch of a kernel that traces rays in the device's way, so many to each work-item.
+Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, std::uint32_t rays,
+                      std::uint32_t rays_of_packets, std::uint32_t rays_of_streams) {
     if (wavefront.device.traversal() == Traversal::packet) rays = rays_of_packets;
     if (wavefront.device.traversal() == Traversal::stream) rays = rays_of_streams;
     return per_ray(rays, in_work.generation, in_work.count);
@@ -58,6 +53,8 @@ std::uint64_t count_hits(RayQueues& queues, std::uint32_t count) {
 
 }  // namespace
 
+std::uint32_t rays_in_groups(const Device& device) { return std::max(device.rays_per_item(), SAHL_LANES); }
+
 std::vector<std::string> wavefront_sources(const Device& device) {
     return {"generate.cl", traversing("intersect", device) + ".cl", "shade.cl",
             traversing("shadow", device) + ".cl", "compact.cl"};
@@ -78,7 +75,7 @@ WavefrontKernels::WavefrontKernels(const Device& device, Program& program)
 
 void launch_generate(Wavefront& wavefront, const device::CameraConstants& camera,
                      const device::WaveConstants& wave, RayBatch& out) {
-    wavefront.kernels.generate.launch(per_ray(wavefront.device.rays_per_item(), 0, wave.count), camera, wave,
+    wavefront.kernels.generate.launch(per_ray(rays_in_groups(wavefront.device), 0, wave.count), camera, wave,
                                       out.rays, out.ids, wavefront.queues.capacity);
 }
 
@@ -87,7 +84,8 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
     launch_traversal(wavefront, wavefront.kernels.intersect,
-                     per_traced_ray(wavefront, in_work, SAHL_PACKET_RAYS, SAHL_STREAM_RAYS),
+                     per_traced_ray(wavefront, in_work, wavefront.device.rays_per_item(), SAHL_PACKET_RAYS,
+                                    SAHL_STREAM_RAYS),
                      &GenerationVisits::intersect, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                      scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
@@ -99,18 +97,19 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    wavefront.kernels.shade.launch(per_ray(wavefront, in_work), scene.primitives, scene.shape_data,
-                                   scene.instances, scene.materials, scene.textures, scene.lights,
-                                   scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, out.light,
-                                   out.pixels, q.shadow_surfaces, q.shadow_light, q.children, q.child_ids,
-                                   q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
+    wavefront.kernels.shade.launch(
+        per_ray(rays_in_groups(wavefront.device), in_work.generation, in_work.count), scene.primitives,
+        scene.shape_data, scene.instances, scene.materials, scene.textures, scene.lights, scene.constants,
+        batch.rays, batch.ids, q.hits, q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light,
+        q.children, q.child_ids, q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
 }
 
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     launch_traversal(wavefront, wavefront.kernels.shadow,
-                     per_traced_ray(wavefront, in_work, SAHL_SHADOW_RAYS, SAHL_SHADOW_RAYS),
+                     per_traced_ray(wavefront, in_work, rays_in_groups(wavefront.device), SAHL_SHADOW_RAYS,
+                                    SAHL_SHADOW_RAYS),
                      &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                      scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids,
                      q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);

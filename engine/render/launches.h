@@ -44,6 +44,9 @@ struct WaitingBatch {
     std::uint32_t generation;
 };
 
+/// Rays of a work-item of kernels that take them in groups of SAHL_LANES (kernels/lanes.h).
+std::uint32_t rays_in_groups(const Device& device);
+
 /// Camera rays of a wave.
 void launch_generate(Wavefront& wavefront, const device::CameraConstants& camera,
                      const device::WaveConstants& wave, RayBatch& out);

@@ -80,7 +80,7 @@ std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
         wave.first_low = static_cast<std::uint32_t>(done);
         wave.first_high = static_cast<std::uint32_t>(done >> 32U);
         wave.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(capacity, pixels - done));
-        const std::uint32_t items = (wave.count + device.rays_per_item() - 1) / device.rays_per_item();
+        const std::uint32_t items = (wave.count + rays_in_groups(device) - 1) / rays_in_groups(device);
         const Launch launch{items, 0, wave.count};
         launch_generate(wavefront, camera, wave, batch);
         launch_intersect(wavefront, {0, wave.count, 0});

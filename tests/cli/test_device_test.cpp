@@ -42,19 +42,18 @@ struct Place {
 };
 
 const std::vector<Fault> one_a_kernel{
-    {"generate", "camera.h", "(real)x - (real)camera->half_width",
-     "(real)x - (real)0.5 - (real)camera->half_width"},
+    {"generate", "camera.h", "(real)camera->half_width", "(real)0.5 - (real)camera->half_width"},
     {"intersect", "shape_group.h", "chords.middle - half_chord, chords",
      "chords.middle + half_chord, chords"},
-    {"shade", "material.h", "light = diffuse * SAHL_MAX", "light = diffuse * 1.01f * SAHL_MAX"},
+    {"shade", "material.h", "light = mul(diffuse, SAHL_MAX", "light = mul(diffuse, 1.01f * SAHL_MAX"},
     {"shadow", "light.h", "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 1.0f",
      "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 2.0f"},
     {"count_children", "compact.cl", "block_count + block] = transmitted",
      "block_count + block] = transmitted + 1u"},
     {"sum_children", "compact.cl", "totals[0] = children", "totals[0] = children - 1u"},
-    {"compact", "compact.cl", "move_ray(children, child_ids, i, next",
-     "move_ray(children, child_ids, i == 300u ? 301u : i, next"},
-    {"describe", "aov.cl", "turned ? -surface.ns : surface.ns", "surface.ns"},
+    {"compact", "compact.cl", "next[to + k] = from[place[k]]",
+     "next[to + k] = from[place[k == 200u ? 201u : k]]"},
+    {"describe", "aov.cl", "turned ? facing : surfaces.ns", "surfaces.ns"},
 };
 
 TEST_CASE("self-test: a wrong kernel ends a render with 4, named with its answer, and no image is written",

@@ -66,26 +66,35 @@ kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const 
     }
 }
 
-static inline void store_parts(global float* to, real3 v) {
-    float3 rounded = round3(v);
-    vstore3(rounded, 0, to);
-    vstore3(round3(v - convert_real3(rounded)), 1, to);
+// Of each lane of v, what a float holds and what that lacks, at `at` of its `width` numbers in `out`.
+static inline void store_parts(realv3 v, global float* out, uint i, uint width, uint at, uint count) {
+    const floatv3 rounded = roundv(v), low = roundv(sub(v, widen(rounded)));
+    for (uint k = 0; k < SAHL_LANES && i + k < count; ++k) {
+        global float* to = out + width * (i + k) + at;
+        vstore3((float3)(((const float*)&rounded.x)[k], ((const float*)&rounded.y)[k], ((const float*)&rounded.z)[k]), 0, to);
+        vstore3((float3)(((const float*)&low.x)[k], ((const float*)&low.y)[k], ((const float*)&low.z)[k]), 1, to);
+    }
 }
 
 kernel void surfaces(const global DevicePrimitive* primitives, const global float* shape_data,
                      const global DeviceInstance* instances, const global float* rays, const global float* hits,
-                     const global uint* hit_ids, global float* out, const uint count) {
+                     const global uint* hit_ids, global float* out, const uint capacity, const uint count) {
     const Shapes shapes = {primitives, shape_data, instances};
-    TEST_FOR_EACH(i, count) {
-        if (hit_ids[i] == SAHL_NO_PRIMITIVE) { continue; }
-        float3 hit = load_soa3(hits, SAHL_HIT_T, count, i);
-        real3 o = convert_real3(load_soa3(rays, SAHL_RAY_ORIGIN, count, i));
-        real3 d = convert_real3(load_soa3(rays, SAHL_RAY_DIRECTION, count, i));
-        Surface s = surface_at(&shapes, hit_ids[count + i], hit_ids[i], o, d, hit.x, hit.y, hit.z);
-        store_parts(out + 19 * i, s.position);
-        store_parts(out + 19 * i + 6, s.ng);
-        store_parts(out + 19 * i + 12, s.ns);
-        out[19 * i + 18] = s.offset;
+    TEST_FOR_EACH_GROUP(i, count) {
+        const uintv primitive = load_idsv(hit_ids, SAHL_HIT_PRIMITIVE, capacity, i);
+        const intv hit = (lane_numbers() < (intv)((int)(count - i))) & (primitive != SAHL_NO_PRIMITIVE);
+        if (lane_bits(hit) == 0u) { continue; }
+        const floatv3 place = load_soa3v(hits, SAHL_HIT_T, capacity, i);
+        const realv3 o = widen(load_soa3v(rays, SAHL_RAY_ORIGIN, capacity, i));
+        const realv3 d = widen(load_soa3v(rays, SAHL_RAY_DIRECTION, capacity, i));
+        const Surfaces s = surfaces_at(&shapes, hit, load_idsv(hit_ids, SAHL_HIT_INSTANCE, capacity, i),
+                                       borrowed(hit, primitive), o, d, place.x, place.y, place.z);
+        store_parts(s.position, out, i, 19u, 0u, count);
+        store_parts(s.ng, out, i, 19u, 6u, count);
+        store_parts(s.ns, out, i, 19u, 12u, count);
+        for (uint k = 0; k < SAHL_LANES && i + k < count; ++k) {
+            out[19u * (i + k) + 18u] = ((const float*)&s.offset)[k];
+        }
     }
 }
 )";

@@ -10,6 +10,7 @@
 #include "engine/oracle/camera.h"
 #include "engine/render/camera_constants.h"
 #include "kernels/device_types.h"
+#include "kernels/rays_per_item.h"
 #include "tests/support/kernel_runner.h"
 
 namespace sahl::tests {
@@ -56,22 +57,23 @@ TEST_CASE("camera rays go where the oracle's go") {
     const Resolution resolution{37, 21};
     const device::WaveConstants wave{0, 0, 37 * 21, 1, 0, 0, 37, 21, 5, 0, 0, 1};
     for (const Camera& camera : cameras) {
-        const std::size_t count = wave.count;
-        Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
-        Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
-        runner.run("generate", count, camera_constants(camera, resolution), wave, rays, ids);
-        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
-        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
+        // What generate takes as its last parameter: groups of lanes are written whole.
+        const std::size_t capacity = (wave.count + SAHL_LANES - 1) / SAHL_LANES * SAHL_LANES;
+        Buffer rays(runner.device(), SAHL_RAY_FLOATS * capacity * 4, "rays");
+        Buffer ids(runner.device(), SAHL_RAY_UINTS * capacity * 4, "ids");
+        runner.run("generate", capacity, camera_constants(camera, resolution), wave, rays, ids);
+        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * capacity);
+        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * capacity);
         const auto vector = [&](std::size_t first, std::size_t i) {
-            return dvec3(floats[first * count + i], floats[(first + 1) * count + i],
-                         floats[(first + 2) * count + i]);
+            return dvec3(floats[first * capacity + i], floats[(first + 1) * capacity + i],
+                         floats[(first + 2) * capacity + i]);
         };
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::uint32_t pixel = words[SAHL_RAY_PIXEL * count + i];
+        for (std::size_t i = 0; i < wave.count; ++i) {
+            const std::uint32_t pixel = words[SAHL_RAY_PIXEL * capacity + i];
             const oracle::Ray wanted =
                 oracle::camera_ray(camera, resolution, pixel % 37 + 0.5, pixel / 37 + 0.5);
             const dvec3 origin = vector(SAHL_RAY_ORIGIN, i), direction = vector(SAHL_RAY_DIRECTION, i);
-            REQUIRE(words[SAHL_RAY_EXCLUDE * count + i] == SAHL_NO_PRIMITIVE);
+            REQUIRE(words[SAHL_RAY_EXCLUDE * capacity + i] == SAHL_NO_PRIMITIVE);
             REQUIRE(vector(SAHL_RAY_WEIGHT, i) == dvec3(1));
             REQUIRE(glm::distance(direction, wanted.direction) < 1e-7);
             REQUIRE(glm::distance(origin, wanted.origin) <= 1e-7 * glm::length(wanted.origin));

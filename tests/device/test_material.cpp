@@ -20,32 +20,46 @@ constexpr const char* kKernels = R"(
 #include "kernels/light.h"
 #include "kernels/material.h"
 #include "kernels/surface.h"
+// v's lanes into place `place` of the `width` vectors that each index has in `out`.
+static inline void store_lanes3(floatv3 v, global float* out, uint i, uint width, uint place, uint count) {
+    for (uint k = 0; k < SAHL_LANES && i + k < count; ++k) {
+        vstore3((float3)(((const float*)&v.x)[k], ((const float*)&v.y)[k], ((const float*)&v.z)[k]),
+                width * (i + k) + place, out);
+    }
+}
 kernel void reflect_light(const global DeviceMaterial* material, const global float4* ns, const global float4* wi,
                           const global float4* wo, global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) { vstore3(phong_light(material, load3(material->diffuse), load3(material->specular), ns[i].xyz, wi[i].xyz, wo[i].xyz), i, out); }
+    TEST_FOR_EACH_GROUP(i, count) {
+        store_lanes3(phong_light(material, same3(load3(material->diffuse)), same3(load3(material->specular)),
+                                 TEST_LANES3(ns, i), TEST_LANES3(wi, i), TEST_LANES3(wo, i)),
+                     out, i, 1, 0, count);
+    }
 }
 kernel void bend(const global float4* d, const global float4* n, global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) {
-        real3 direction = normalize3_real(convert_real3(d[i].xyz)), normal = normalize3_real(convert_real3(n[i].xyz));
-        real3 refracted = (real3)(0);
-        bool passes = refracted_direction(direction, normal, (real)d[i].w, &refracted);
-        vstore3(round3(reflected_direction(direction, normal)), 3u * i, out);
-        vstore3(round3(refracted), 3u * i + 1u, out);
-        vstore3((float3)(passes ? 1.0f : 0.0f, 0.0f, 0.0f), 3u * i + 2u, out);
+    TEST_FOR_EACH_GROUP(i, count) {
+        const realv3 direction = normalizev(widen(TEST_LANES3(d, i))), normal = normalizev(widen(TEST_LANES3(n, i)));
+        realv3 refracted = same3_real((real3)(0));
+        const intv passes = convert_intv(
+            refracted_directions(direction, normal, convert_realv(TEST_LANES_OF(floatv, d, i, w)), &refracted));
+        store_lanes3(roundv(reflected_directions(direction, normal)), out, i, 3, 0, count);
+        store_lanes3(roundv(refracted), out, i, 3, 1, count);
+        store_lanes3(where(passes, same3((float3)(1.0f, 0.0f, 0.0f)), same3((float3)(0.0f))), out, i, 3, 2, count);
     }
 }
 kernel void arrive(const global DeviceLight* lights, const uint light, const global float4* position,
                    global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) {
-        float3 to_light = vector_to_light(lights + light, position[i].xyz);
-        vstore3(to_light, 3u * i, out);
-        vstore3(arriving_light(lights + light, normalize3(to_light), sqrt(dot3(to_light, to_light))), 3u * i + 1u, out);
-        vstore3((float3)(shadow_t_max(lights + light)), 3u * i + 2u, out);
+    TEST_FOR_EACH_GROUP(i, count) {
+        const floatv3 to_light = vectors_to_light(lights + light, TEST_LANES3(position, i));
+        store_lanes3(to_light, out, i, 3, 0, count);
+        store_lanes3(arriving_light(lights + light, normalizev(to_light), sqrt(dotv(to_light, to_light))), out, i, 3, 1, count);
+        store_lanes3(same3((float3)(shadow_t_max(lights + light))), out, i, 3, 2, count);
     }
 }
 kernel void offset(const global float4* position, const global float4* off, const global float4* direction,
                    global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) { vstore3(offset_origin(position[i].xyz, off[i].xyz, direction[i].xyz), i, out); }
+    TEST_FOR_EACH_GROUP(i, count) {
+        store_lanes3(offset_origins(TEST_LANES3(position, i), TEST_LANES3(off, i), TEST_LANES3(direction, i)), out, i, 1, 0, count);
+    }
 }
 )";
 

@@ -1,4 +1,4 @@
-// kernels/math.h against double precision.
+// kernels/math.h and power.h against double precision.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -12,12 +12,16 @@ namespace sahl::tests {
 namespace {
 
 constexpr const char* kKernels = R"(
-#include "kernels/math.h"
+#include "kernels/power.h"
 kernel void powers(const global float* x, const global float* n, global float* out, const uint count) {
-    TEST_FOR_EACH(i, count) {
-        out[3 * i] = power(x[i], n[i]);
-        out[3 * i + 1] = log2_positive(x[i] > 0.0f ? x[i] : 1.0f);
-        out[3 * i + 2] = exp2_bounded(n[i]);
+    TEST_FOR_EACH_GROUP(i, count) {
+        const floatv xs = TEST_LANES(floatv, x, i), ns = TEST_LANES(floatv, n, i);
+        const floatv powers = power(xs, ns), logs = log2_positive(where(xs > 0.0f, xs, (floatv)(1.0f)));
+        const floatv exps = exp2_bounded(ns);
+        for (uint k = 0; k < 8u && i + k < count; ++k) {
+            vstore3((float3)(((const float*)&powers)[k], ((const float*)&logs)[k], ((const float*)&exps)[k]),
+                    i + k, out);
+        }
     }
 }
 kernel void products(const global float4* in, global float* out, const uint count) {

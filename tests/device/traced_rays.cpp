@@ -8,6 +8,7 @@
 #include <span>
 #include <sstream>
 
+#include "kernels/rays_per_item.h"
 #include "tests/device/ray_kernels.h"
 
 namespace sahl::tests {
@@ -139,16 +140,18 @@ RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, std::uint32
 }
 
 RayTracer::Batch RayTracer::upload(const std::vector<TestRay>& rays, const std::vector<TestHit>& hits) {
-    Batch batch = upload(rays);
-    const std::size_t count = batch.count;
-    const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * count);
-    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::write, SAHL_HIT_UINTS * count);
-    for (std::size_t i = 0; i < count; ++i) {
-        floats[i] = hits[i].t;
-        floats[count + i] = hits[i].u;
-        floats[2 * count + i] = hits[i].v;
-        hit_ids[SAHL_HIT_PRIMITIVE * count + i] = hits[i].primitive;
-        hit_ids[SAHL_HIT_INSTANCE * count + i] = hits[i].instance;
+    // Shading takes whole groups; in what fills the last up are copies of the first hit.
+    Batch batch = upload(rays, static_cast<std::uint32_t>((0 - rays.size()) % SAHL_LANES));
+    const std::size_t capacity = batch.capacity;
+    const auto floats = batch.hits.map<float>(MapMode::write, SAHL_HIT_FLOATS * capacity);
+    const auto hit_ids = batch.hit_ids.map<std::uint32_t>(MapMode::write, SAHL_HIT_UINTS * capacity);
+    for (std::size_t i = 0; i < capacity; ++i) {
+        const TestHit& hit = hits[i < batch.count ? i : 0];
+        floats[i] = hit.t;
+        floats[capacity + i] = hit.u;
+        floats[2 * capacity + i] = hit.v;
+        hit_ids[SAHL_HIT_PRIMITIVE * capacity + i] = hit.primitive;
+        hit_ids[SAHL_HIT_INSTANCE * capacity + i] = hit.instance;
     }
     return batch;
 }
@@ -288,7 +291,7 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
     constexpr std::size_t kFloats = 19;
     Buffer out(device(), kFloats * batch.count * sizeof(float), "surfaces");
     scalar().run("surfaces", batch.count, scene.primitives, scene.shape_data, scene.instances, batch.rays,
-                 batch.hits, batch.hit_ids, out);
+                 batch.hits, batch.hit_ids, out, batch.capacity);
     const std::vector<float> parts = KernelRunner::download<float>(out, kFloats * batch.count);
     std::vector<TestSurface> result;
     for (std::size_t i = 0; i < batch.count; ++i) {
@@ -301,9 +304,11 @@ std::vector<TestSurface> RayTracer::surfaces(const DeviceScene& scene, const std
 std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vector<TestRay>& rays,
                                         const std::vector<TestHit>& hits) {
     Batch batch = upload(rays, hits);
-    const std::size_t count = batch.count;
+    const std::size_t count = batch.count, capacity = batch.capacity;
     const std::size_t lights = scene.constants.light_count;
-    const auto buffer = [&](std::size_t arrays) { return Buffer(device(), arrays * count * 4, "shading"); };
+    const auto buffer = [&](std::size_t arrays) {
+        return Buffer(device(), arrays * capacity * 4, "shading");
+    };
     Buffer light = buffer(3), pixels = buffer(1), surfaces = buffer(SAHL_SURFACE_FLOATS),
            brought = buffer(3 * lights);
     Buffer children = buffer(std::size_t{2} * SAHL_RAY_FLOATS),
@@ -312,24 +317,24 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
     // run() adds the count, which as shade's last parameter says: do spawn.
     scalar().run("shade", count, scene.primitives, scene.shape_data, scene.instances, scene.materials,
                  scene.textures, scene.lights, scene.constants, batch.rays, batch.ids, batch.hits,
-                 batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes, batch.count,
-                 batch.count);
-    shadow(scene, batch.hit_ids, surfaces, brought, outcomes, light, batch.count, batch.count);
+                 batch.hit_ids, light, pixels, surfaces, brought, children, child_ids, outcomes,
+                 batch.capacity, batch.count);
+    shadow(scene, batch.hit_ids, surfaces, brought, outcomes, light, batch.capacity, batch.count);
 
-    const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * count);
-    const auto ids = child_ids.map<std::uint32_t>(MapMode::read, std::size_t{2} * SAHL_RAY_UINTS * count);
+    const auto rays_out = children.map<float>(MapMode::read, std::size_t{2} * SAHL_RAY_FLOATS * capacity);
+    const auto ids = child_ids.map<std::uint32_t>(MapMode::read, std::size_t{2} * SAHL_RAY_UINTS * capacity);
     const auto outcome = outcomes.map<std::uint32_t>(MapMode::read, count);
     const auto arrived = light.map<float>(MapMode::read, count);
-    const auto unshadowed = brought.map<float>(MapMode::read, 3 * lights * count);
+    const auto unshadowed = brought.map<float>(MapMode::read, 3 * lights * capacity);
     const auto child = [&](std::size_t which, std::size_t i) {
         TestRay ray;
-        const float* floats = rays_out.data() + which * SAHL_RAY_FLOATS * count + i;
+        const float* floats = rays_out.data() + which * SAHL_RAY_FLOATS * capacity + i;
         for (int k = 0; k < 3; ++k) {
-            ray.origin[k] = floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * count];
-            ray.direction[k] = floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * count];
+            ray.origin[k] = floats[(SAHL_RAY_ORIGIN + static_cast<std::size_t>(k)) * capacity];
+            ray.direction[k] = floats[(SAHL_RAY_DIRECTION + static_cast<std::size_t>(k)) * capacity];
         }
-        ray.exclude = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_EXCLUDE) * count + i] & SAHL_ID_MASK;
-        ray.exclude_instance = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_INSTANCE) * count + i];
+        ray.exclude = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_EXCLUDE) * capacity + i] & SAHL_ID_MASK;
+        ray.exclude_instance = ids[(which * SAHL_RAY_UINTS + SAHL_RAY_INSTANCE) * capacity + i];
         return ray;
     };
     std::vector<TestSpawn> result(count);
@@ -341,7 +346,7 @@ std::vector<TestSpawn> RayTracer::shade(const DeviceScene& scene, const std::vec
                      child(1, i),
                      0,
                      arrived[i]};
-        for (std::size_t l = 0; l < lights; ++l) result[i].unshadowed += unshadowed[3 * l * count + i];
+        for (std::size_t l = 0; l < lights; ++l) result[i].unshadowed += unshadowed[3 * l * capacity + i];
     }
     return result;
 }

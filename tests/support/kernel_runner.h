@@ -15,7 +15,8 @@ namespace sahl::tests {
 class KernelRunner {
 public:
     /// `text`: OpenCL C. A kernel's last parameter is a `uint count`; its work-items share the indices
-    /// 0 ≤ i < count by TEST_FOR_EACH(i, count), which this class puts before the text.
+    /// 0 ≤ i < count by TEST_FOR_EACH(i, count), which this class puts before the text; or by groups of
+    /// eight, the first of which is i, by TEST_FOR_EACH_GROUP(i, count), with TEST_LANES for their inputs.
     explicit KernelRunner(const std::string& text, const std::string& options = "",
                           std::shared_ptr<Device> device = std::make_shared<Device>());
 
