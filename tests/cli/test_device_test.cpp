@@ -52,7 +52,7 @@ const std::vector<Fault> one_a_kernel{
      "block_count + block] = transmitted + 1u"},
     {"sum_children", "compact.cl", "totals[0] = children", "totals[0] = children - 1u"},
     {"compact", "compact.cl", "next[to + k] = from[place[k]]",
-     "next[to + k] = from[place[k == 200u ? 201u : k]]"},
+     "next[to + k] = from[place[0]]"},
     {"describe", "aov.cl", "turned ? facing : surfaces.ns", "surfaces.ns"},
 };
 

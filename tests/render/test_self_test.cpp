@@ -148,8 +148,7 @@ const std::vector<Fault> faults{
      "block_counts[block_count + block] = reflected"},
     {"sum_children", "compact.cl", "k < 2u * block_count", "k < 2u * block_count - 1u"},
     {"sum_children", "compact.cl", "totals[1] = (uint)shadow_rays", "totals[1] = (uint)(shadow_rays + 1u)"},
-    {"compact", "compact.cl", "next[to + k] = from[place[k]]",
-     "next[to + k] = from[place[k == 200u ? 201u : k]]"},
+    {"compact", "compact.cl", "next[to + k] = from[place[k]]", "next[to + k] = from[place[0]]"},
     {"compact", "compact.cl", "k < SAHL_RAY_UINTS", "k < SAHL_RAY_UINTS - 1u"},
     {"compact", "compact.cl", "waiting[to + k - capacity]", "waiting[to + k - capacity + (k == fitting)]"},
     {"describe", "aov.cl", "turned ? facing : surfaces.ns", "surfaces.ns"},
@@ -170,6 +169,7 @@ TEST_CASE("self-test: each mistake has its place in the kernels", "[self_test]")
 TEST_CASE("self-test: each mistake is found in the kernel that makes it", "[self_test]") {
     const TemporaryFolder cache;
     const ScopedVariable no_cache("SAHL_CACHE_DIR", cache.path().string());
+    Device one_by_one({.traversal = Traversal::scalar});
     // Each takes a second or two: kernels are compiled for it.
     const std::size_t step = full_tests() ? 1 : 20;
     for (std::size_t i = 0; i < faults.size(); i += step) {
@@ -179,7 +179,9 @@ TEST_CASE("self-test: each mistake is found in the kernel that makes it", "[self
         break_kernel(kernels.path(), fault);
         const ScopedVariable from("SAHL_KERNEL_DIR", kernels.path().string());
         INFO(fault.file << ": " << fault.from << " -> " << fault.to);
-        const SelfTestReport report = run_self_test(test_device());
+        SelfTestReport report = run_self_test(test_device());
+        // Some of the code is for rays that are traced one by one.
+        if (report.failed() == nullptr) report = run_self_test(one_by_one);
         const KernelTest* failed = report.failed();
         CHECK(failed != nullptr);
         if (failed == nullptr) continue;
