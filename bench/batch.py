@@ -67,12 +67,19 @@ def timed(command, repetitions, statuses):
     return {"wall_s": spread(walls), "processor_s": spread(processors)}
 
 
+def listed(command, repetitions):
+    """Until the last image is named, and until the end: after that come the scene, its memory and an estimate."""
+    runs = [run_batch(command) for _ in range(repetitions)]
+    return {"list_s": spread([max(at for at, event in run if event["event"] == "job") for run in runs]),
+            "wall_s": spread([run[-1][0] for run in runs])}
+
+
 def measure(images, repetitions):
     with tempfile.TemporaryDirectory() as folder:
         manifest = write_manifest(folder, images)
         command = [SAHL, "batch", manifest]
         report = {"list": timed([*command, "--check"], repetitions, "7"),
-                  "dry_run": timed([*command, "--dry-run"], repetitions, "0")}
+                  "dry_run": listed([*command, "--dry-run"], repetitions)}
         report["warm"] = of_images(run_batch(command))
         report["finished"] = timed([*command, "--check"], repetitions, "0")
         report["again"] = timed([*command, "-q"], repetitions, "0")
@@ -92,8 +99,11 @@ def print_report(report):
         print(f"  {name:10}{run['images']:8}{run['first_s']:10.2f}{run['frame_ms']:10.2f}{run['median_frame_ms']:8.2f}"
               f"{run['rendering_ms']:11.2f}{run['overhead_ms']:11.2f}{run['scenes_read']:13}{run['trees_built']:13}")
     print(f"\n  {report['images']} images{'s':>20}{'processor':>24}")
-    for name, text in (("list", "--check, none finished"), ("dry_run", "--dry-run"),
-                       ("finished", "--check, all finished"), ("again", "again, nothing to do")):
+    dry_run = report["dry_run"]
+    print(f"  {'--dry-run, all named':24}{spread_text(dry_run['list_s'], '{:.2f}'):>24}")
+    print(f"  {'--dry-run, whole':24}{spread_text(dry_run['wall_s'], '{:.2f}'):>24}")
+    for name, text in (("list", "--check, none finished"), ("finished", "--check, all finished"),
+                       ("again", "again, nothing to do")):
         times = report[name]
         print(f"  {text:24}{spread_text(times['wall_s'], '{:.2f}'):>24}{times['processor_s']['median']:10.2f}")
 

@@ -112,6 +112,7 @@ std::optional<int> worker_socket(int argc, char** argv) {
     if (argc != 2 || argv[0] != std::string_view(worker_name)) return std::nullopt;
     const int socket = std::stoi(argv[1]);
     ::fcntl(socket, F_SETFD, FD_CLOEXEC);  // a compiler that it starts may live longer
+    ::prctl(PR_SET_NAME, worker_name);
     return socket;
 }
 

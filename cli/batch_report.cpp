@@ -85,30 +85,36 @@ double BatchReport::rays_per_second() const {
     return seconds_ > 0 ? static_cast<double>(rays_) / seconds_ : 0;
 }
 
-double BatchReport::share_of_current() const {
+double BatchReport::share_of_current(std::uint64_t done) const {
     if (!current_ || current_total_ == 0) return 0;
-    return static_cast<double>(current_done_) / static_cast<double>(current_total_);
+    return static_cast<double>(done) / static_cast<double>(current_total_);
 }
 
 std::optional<double> BatchReport::seconds_left() const {
-    const double done = static_cast<double>(rendered_) + share_of_current();
+    const double done = static_cast<double>(rendered_) + share_of_current(current_done_here());
     if (done <= 0) return std::nullopt;
     const double elapsed = std::chrono::duration<double>(Clock::now() - began_).count();
     const double all = static_cast<double>(setup_.jobs.size() - failed_);
-    const double left = all - static_cast<double>(finished_) - share_of_current();
+    const double left = all - static_cast<double>(finished_) - share_of_current(current_done_);
     return elapsed / done * std::max(left, 0.0);
 }
 
 std::string BatchReport::status_line(std::size_t columns) const {
     const std::size_t all = setup_.jobs.size();
-    const double whole = (static_cast<double>(finished_) + share_of_current()) / static_cast<double>(all);
+    const double share = share_of_current(current_done_);
+    const double whole = (static_cast<double>(finished_) + share) / static_cast<double>(all);
     std::string line = fmt::format("{} {}/{}", bar(whole, 16), finished_, all);
     if (failed_ > 0) line += fmt::format(", {} failed", failed_);
     std::string end;
-    if (current_)
-        end +=
-            fmt::format(" {} {:3.0f} %", bar(share_of_current(), 10), std::floor(100 * share_of_current()));
-    if (seconds_ > 0) end += fmt::format("  {}rays/s", with_prefix(rays_per_second()));
+    if (current_) end += fmt::format(" {} {:3.0f} %", bar(share, 10), std::floor(100 * share));
+    const double current_seconds = std::chrono::duration<double>(Clock::now() - current_began_).count();
+    if (seconds_ > 0) {
+        end += fmt::format("  {}rays/s", with_prefix(rays_per_second()));
+    } else if (current_ && current_done_here() > 0) {
+        // How many rays that makes is known at the end of an image.
+        const double rate = static_cast<double>(current_done_here()) / current_seconds;
+        end += fmt::format("  {}samples/s", with_prefix(rate));
+    }
     if (const auto left = seconds_left()) end += "  ETA " + clock_time(*left);
     if (current_) {
         const std::size_t taken = line.size() + 2 + end.size();
@@ -151,6 +157,8 @@ void BatchReport::begin(const std::vector<JobOutcome>& outcomes) {
 
 void BatchReport::started(std::size_t job, const JobOutcome& outcome) {
     current_ = job;
+    current_began_ = Clock::now();
+    current_begun_with_ = 0;
     current_done_ = 0;
     current_total_ = 0;
     emit({{"event", "render"},
@@ -160,6 +168,8 @@ void BatchReport::started(std::size_t job, const JobOutcome& outcome) {
 }
 
 void BatchReport::resumed(std::size_t job, std::uint64_t done, std::uint64_t total) {
+    current_begun_with_ = done;
+    progress(done, total);
     emit({{"event", "resume"}, {"job", job}, {"done", done}, {"total", total}});
     say(fmt::format("{}: goes on from its checkpoint, {:.0f} % of the samples", name_of(job),
                     100.0 * static_cast<double>(done) / static_cast<double>(total)));

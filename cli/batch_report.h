@@ -53,7 +53,10 @@ private:
     double rays_per_second() const;
     /// Seconds that the rest takes, if it goes on as so far.
     std::optional<double> seconds_left() const;
-    double share_of_current() const;
+    /// Of the samples of the image in work, `done`.
+    double share_of_current(std::uint64_t done) const;
+    /// What this run has done of it, where another had begun.
+    std::uint64_t current_done_here() const { return current_done_ - current_begun_with_; }
     void emit(const nlohmann::ordered_json& event);
     void write_status(const char* state);
 
@@ -72,6 +75,8 @@ private:
     std::size_t rendered_ = 0;
     std::size_t failed_ = 0;
     std::optional<std::size_t> current_{};
+    Clock::time_point current_began_{};
+    std::uint64_t current_begun_with_ = 0;  ///< samples of a checkpoint
     std::uint64_t current_done_ = 0;
     std::uint64_t current_total_ = 0;
     double seconds_ = 0;  ///< of rendering what is rendered
