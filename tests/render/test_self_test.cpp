@@ -169,7 +169,7 @@ TEST_CASE("self-test: each mistake has its place in the kernels", "[self_test]")
 TEST_CASE("self-test: each mistake is found in the kernel that makes it", "[self_test]") {
     const TemporaryFolder cache;
     const ScopedVariable no_cache("SAHL_CACHE_DIR", cache.path().string());
-    Device one_by_one({.traversal = Traversal::scalar});
+    Device one_by_one({.selector = {}, .traversal = Traversal::scalar});
     // Each takes a second or two: kernels are compiled for it.
     const std::size_t step = full_tests() ? 1 : 20;
     for (std::size_t i = 0; i < faults.size(); i += step) {
