@@ -67,8 +67,9 @@ GenerationResults trace_generation(Wavefront& wavefront, const WaitingBatch& in_
     return results;
 }
 
-std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t> totals) {
+std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t> mapped) {
     const HostStep step("wait");
+    Mapping<std::uint32_t> totals(std::move(mapped));  // given back within the step
     totals.wait();
     return {totals[0], totals[1], totals[2]};
 }
