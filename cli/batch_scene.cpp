@@ -42,10 +42,9 @@ void check_unchanged(const BatchJob& job, const SceneContent& content) {
 }  // namespace
 
 MemoryRequest BatchScene::request_of(const BatchJob& job, const RenderSettings& settings) {
-    MemoryRequest request = memory_request(device_, settings, light_count_);
     const std::vector<Aov> no_aovs;
     const std::vector<Aov>& aovs = job.settings.aovs ? *job.settings.aovs : no_aovs;
-    for (const Aov aov : aovs) request.aovs += aov_pixel_bytes(aov) * request.pixels;
+    MemoryRequest request = with_aovs(memory_request(device_, settings, light_count_), aovs);
     const std::vector<OutputSettings> encodings = settings_for(job.outputs, encoding_of(job.settings));
     for (std::size_t i = 0; i < job.outputs.size(); ++i) {
         const std::vector<Aov>& layers = can_hold_aovs(job.outputs[i]) ? aovs : no_aovs;

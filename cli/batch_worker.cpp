@@ -196,7 +196,7 @@ private:
         MemoryReservation layers(device.memory(), plan.aovs, "AOVs");
         if (task.outputs.end() != std::find_if(task.outputs.begin(), task.outputs.end(),
                                                [](const BatchOutput& output) { return output.has_aovs; }))
-            task.aovs = scene_->renderer().render_aovs(settings, *job.settings.aovs);
+            task.aovs = scene_->renderer().render_aovs(settings, *job.settings.aovs, orders_.stop());
 
         Rendered result{{}, prepared.camera, settings, settings.resolution, {}, 0, 0};
         {

@@ -33,7 +33,7 @@ void check_files(const ProfileOptions& options) {
 /// What is said of a scene.
 struct Measured {
     Measurement measurement;
-    std::vector<PagePicture> pictures;  ///< for the page, if there is to be one
+    PagePictures pictures;  ///< for the page, if there is to be one
 };
 
 Image rendered_image(Prepared& prepared) {
@@ -43,6 +43,16 @@ Image rendered_image(Prepared& prepared) {
     prepared.renderer->render(settings, film, {}, interruption());
     check_interruption();
     return film.resolve(settings.samples ? settings.samples->count() : settings.spp);
+}
+
+PagePictures pictures_of(Prepared& prepared) {
+    PagePictures pictures{rendered_image(prepared)};
+    std::vector<AovImage> costs =
+        prepared.renderer->render_aovs(prepared.job.settings, costs_of_page, interruption());
+    check_interruption();
+    pictures.counts.push_back({"Rays", std::move(costs[0].uints)});
+    pictures.counts.push_back({"Node visits", std::move(costs[1].uints)});
+    return pictures;
 }
 
 Measured take_measurement(const ProfileOptions& options, const CommonOptions& common) {
@@ -58,8 +68,8 @@ Measured take_measurement(const ProfileOptions& options, const CommonOptions& co
     measured.setup = std::move(prepared.measurement.setup);
     measured.compiles_in_setup = prepared.measurement.compiles_in_setup;
     measured.lights = prepared.measurement.lights;
-    std::vector<PagePicture> pictures;
-    if (options.html) pictures.push_back({"Image", rendered_image(prepared)});
+    PagePictures pictures;
+    if (options.html) pictures = pictures_of(prepared);
     return {std::move(measured), std::move(pictures)};
 }
 

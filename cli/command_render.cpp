@@ -82,8 +82,8 @@ MemoryRequest request_of(const Job& job, const Device& device, const Scene& scen
                          const std::vector<Aov>& aovs) {
     RenderSettings deepest = job.settings;
     deepest.depth = *std::max_element(job.depths.begin(), job.depths.end());
-    MemoryRequest request = memory_request(device, deepest, static_cast<std::uint32_t>(scene.lights.size()));
-    for (const Aov aov : aovs) request.aovs += aov_pixel_bytes(aov) * request.pixels;
+    const auto lights = static_cast<std::uint32_t>(scene.lights.size());
+    MemoryRequest request = with_aovs(memory_request(device, deepest, lights), aovs);
     request.encoder = largest_encoder(job.outputs, image_size(job.settings), aovs);
     return request;
 }
@@ -119,13 +119,17 @@ void render_job(Job& job, Renderer& renderer, Device& device, const MemoryPlan& 
                 const RenderOptions& options, const CommonOptions& common) {
     job.settings.ray_budget = plan.ray_budget;
     const MemoryReservation layers(device.memory(), plan.aovs, "AOVs");
-    std::vector<AovImage> aovs;  // the same at every depth
-    if (!options.aovs.empty()) aovs = renderer.render_aovs(job.settings, options.aovs);
+    const bool with_costs = std::any_of(options.aovs.begin(), options.aovs.end(), is_cost);
+    std::vector<AovImage> aovs;
     for (std::size_t i = 0; i < job.depths.size(); ++i) {
         if (interruption().stop_requested()) {
             throw Interrupted(fmt::format("{} of {} images are written", i, job.depths.size()));
         }
         job.settings.depth = job.depths[i];
+        if (i == 0 || with_costs) {  // the others are the same at every depth
+            aovs.clear();
+            aovs = renderer.render_aovs(job.settings, options.aovs, interruption());
+        }
         const Rendered image = render_image(renderer, device, job.settings, job.outputs[i], aovs, job.camera,
                                             plan, options, common);
         warn_of_lost_light(image);
@@ -181,7 +185,9 @@ Command add_render_command(CLI::App& app, CommonOptions& common) {
         "inf),\n"
         "N the unit normal and albedo the diffuse colour (no hit: 0), ids count from 0, id.instance 0 being "
         "the\n"
-        "world (no hit: 4294967295).\n"
+        "world (no hit: 4294967295). cost.rays and cost.nodes are what the pixel cost, all samples together, "
+        "counted\n"
+        "in a render of its own.\n"
         "SIGINT (Ctrl-C) and SIGTERM end it with the exit status 130 and 143. What is finished of the image "
         "is\n"
         "saved as NAME.partial.EXT, which later runs leave alone; other pixels are black. A second one ends "

@@ -1,6 +1,7 @@
 // What `sahl profile` is asked to do.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ struct AbOptions {
     std::vector<std::string> settings;
     std::vector<SlowdownLimit> limits;
 };
+
+/// AOVs that a page shows.
+inline constexpr std::array costs_of_page{Aov::cost_rays, Aov::cost_nodes};
 
 struct ProfileOptions {
     RenderOptions render;       ///< of it the scene, the image, the tree and the limit of memory

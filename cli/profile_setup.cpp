@@ -25,9 +25,11 @@ FrameJob plan_frame(const ProfileOptions& options, const Scene& scene) {
     return job;
 }
 
-MemoryRequest request_of(const FrameJob& job, const Device& device, const Scene& scene) {
+MemoryRequest request_of(const ProfileOptions& options, const FrameJob& job, const Device& device,
+                         const Scene& scene) {
     MemoryRequest request =
         memory_request(device, job.settings, static_cast<std::uint32_t>(scene.lights.size()));
+    if (options.html) request = with_aovs(request, costs_of_page);
     const Resolution size = image_size(job.settings);
     request.encoder = encoder_bytes(job.output, job.encoding, size.width, size.height, {});
     return request;
@@ -66,7 +68,7 @@ Prepared prepare(const ProfileOptions& options, const CommonOptions& common) {
     Device& device = *out.device;
     recorder.add(device);
     device.memory().set_limit(options.render.max_memory.value_or(physical_memory_bytes()));
-    const MemoryRequest request = request_of(out.job, device, scene);
+    const MemoryRequest request = request_of(options, out.job, device, scene);
     out.renderer = std::make_unique<Renderer>(device, scene, request, options.render.build_quality);
     out.job.settings.ray_budget = out.renderer->memory_plan().ray_budget;
     ClockOffset clock;

@@ -12,13 +12,9 @@ constexpr double most_stops = 100;
 constexpr std::string_view all_aovs = "all";
 
 std::vector<Aov> read_aovs(std::string_view option, std::string_view text) {
+    if (text == all_aovs) return aovs_of_first_hits();
     Choices<Aov> choices;
-    std::vector<Aov> all;
-    for (const AovName& name : aov_names) {
-        choices.emplace_back(name.name, name.aov);
-        all.push_back(name.aov);
-    }
-    if (text == all_aovs) return all;
+    for (const AovName& name : aov_names) choices.emplace_back(name.name, name.aov);
     std::vector<Aov> aovs;
     for (const std::string_view piece : split(text, ',')) {
         if (piece == all_aovs) {
@@ -45,8 +41,8 @@ void add_aov_option(CLI::App& command, std::vector<Aov>& aovs) {
     for (const AovName& name : aov_names) words.words.emplace_back(name.name);
     CLI::Option* option = add_value(
         command, "--aov", "LIST", [&aovs](const std::string& text) { aovs = read_aovs("--aov", text); },
-        fmt::format("channels beside the image in EXR files: {}, or several of {}", words.alone,
-                    fmt::join(words.words, ", ")));
+        fmt::format("channels beside the image in EXR files: {} (without costs), or several of {}",
+                    words.alone, fmt::join(words.words, ", ")));
     set_words(*option, std::move(words));
 }
 
@@ -119,17 +115,21 @@ void add_image_options(CLI::App& command, RenderOptions& options) {
         "only these pixels; X1 and Y1 are just outside");
 }
 
+void add_traversal_option(CLI::App& command, std::optional<Traversal>& traversal) {
+    add_choice<Traversal>(
+        command, "--traversal", "WAY", traversal,
+        {{"packet", Traversal::packet}, {"stream", Traversal::stream}, {"scalar", Traversal::scalar}},
+        "of rays through the tree, which changes no image: neighbours together, single rays "
+        "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
+}
+
 void add_tree_options(CLI::App& command, BuildQuality& quality, std::optional<Traversal>& traversal) {
     add_choice<BuildQuality>(
         command, "--build-quality", "QUALITY", quality,
         {{"high", BuildQuality::high}, {"fast", BuildQuality::fast}},
         "of the tree over the primitives: fast builds it in less time, and rays take longer "
         "(default: high)");
-    add_choice<Traversal>(
-        command, "--traversal", "WAY", traversal,
-        {{"packet", Traversal::packet}, {"stream", Traversal::stream}, {"scalar", Traversal::scalar}},
-        "of rays through the tree, which changes no image: neighbours together, single rays "
-        "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
+    add_traversal_option(command, traversal);
 }
 
 void add_memory_limit(CLI::App& command, std::optional<std::uint64_t>& limit) {

@@ -34,7 +34,10 @@ void add_view_options(CLI::App& command, RenderOptions& options);
 /// The same and the crop.
 void add_image_options(CLI::App& command, RenderOptions& options);
 
-/// How the tree is built and walked through.
+/// `--traversal`: how the tree is walked through.
+void add_traversal_option(CLI::App& command, std::optional<Traversal>& traversal);
+
+/// The same and how the tree is built.
 void add_tree_options(CLI::App& command, BuildQuality& quality, std::optional<Traversal>& traversal);
 
 /// `--aov`.

@@ -8,8 +8,8 @@ kernel void intersect_scalar(const global BvhNode* nodes, const global uchar* le
                              const SceneConstants scene, const global float* rays, const global uint* ray_ids,
                              global float* hits, global uint* hit_ids, const uint capacity,
                              const uint count SAHL_COUNTS_PARAMETER) {
-    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
     SAHL_FOR_EACH_RAY(i, count) {
+        const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_AT(i)};
         Ray ray = load_ray(rays, ray_ids, capacity, i);
         HitState hit = closest_hit(&bvh, &ray, hit_state(0.0f, INFINITY));
         store_hit(hits, hit_ids, capacity, i, &hit);

@@ -12,7 +12,7 @@ kernel void shadow_packet(const global BvhNode* nodes, const global uchar* leave
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity,
                           const uint count SAHL_COUNTS_PARAMETER) {
-    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
+    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_AT(get_global_id(0))};
     const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
                              shadow_light, outcomes,  contributions, capacity};
     const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;

@@ -11,7 +11,6 @@ kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leave
                           const global float* shadow_light, const global uint* outcomes,
                           global float* contributions, const uint capacity,
                           const uint count SAHL_COUNTS_PARAMETER) {
-    const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_OF_ITEM};
     const ShadowWork work = {primitives,   materials, lights,        hit_ids, shadow_surfaces,
                              shadow_light, outcomes,  contributions, capacity};
     SAHL_FOR_EACH_GROUP(i, count) {
@@ -25,6 +24,7 @@ kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leave
             for (; lanes != 0u; lanes &= lanes - 1u) {
                 const Ray ray = ray_of_lane(&rays, lowest_lane(lanes));
                 const uint k = i + lowest_lane(lanes);
+                const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_AT(k)};
                 add_light(&work, k,
                           brought_light(&work, l, k) *
                               transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));

@@ -27,15 +27,11 @@ Resolution read_size(const JsonReader& reader, const JsonValue& value) {
 
 std::vector<Aov> read_aovs(const JsonReader& reader, const JsonValue& value) {
     std::vector<std::string_view> names;
-    std::vector<Aov> all;
-    for (const AovName& name : aov_names) {
-        names.push_back(name.name);
-        all.push_back(name.aov);
-    }
-    if (value.kind == JsonKind::text && reader.text(value, "aov") == "all") return all;
+    for (const AovName& name : aov_names) names.push_back(name.name);
+    if (value.kind == JsonKind::text && reader.text(value, "aov") == "all") return aovs_of_first_hits();
     std::vector<Aov> aovs;
     for (const JsonValue& element : reader.array(value, "aov", "\"all\" or an array of AOVs")) {
-        const Aov aov = all[reader.choice(element, "aov", "AOVs", names)];
+        const Aov aov = aov_names.at(reader.choice(element, "aov", "AOVs", names)).aov;
         if (std::find(aovs.begin(), aovs.end(), aov) != aovs.end()) {
             reader.fail(element, fmt::format("the AOV {} is there a second time; remove it",
                                              reader.text(element, "aov")));

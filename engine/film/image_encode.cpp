@@ -22,7 +22,7 @@ constexpr std::array pixel_types{OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16, 
 OIIO::TypeDesc type_of(PixelType type) { return pixel_types[static_cast<std::size_t>(type)]; }
 
 OIIO::TypeDesc type_of(Aov aov, const Encoding& encoding) {
-    if (aov_name(aov).is_id) return OIIO::TypeDesc::UINT;
+    if (aov_name(aov).is_uint) return OIIO::TypeDesc::UINT;
     return aov == Aov::albedo ? type_of(encoding.pixel_type) : OIIO::TypeDesc::FLOAT;
 }
 
@@ -142,8 +142,8 @@ private:
         for (const AovImage& aov : aovs_) {
             const int channels = channels_of(aov.aov);
             const OIIO::TypeDesc type = type_of(aov.aov, encoding_);
-            if (aov_name(aov.aov).is_id) {
-                put(channels, aov.ids.data() + first, OIIO::TypeDesc::UINT, type);
+            if (aov_name(aov.aov).is_uint) {
+                put(channels, aov.uints.data() + first, OIIO::TypeDesc::UINT, type);
             } else {
                 put(channels, aov.values.data() + first * static_cast<std::size_t>(channels),
                     OIIO::TypeDesc::FLOAT, type);
@@ -170,7 +170,7 @@ void check_aovs(const fs::path& path, const Image& image, std::span<const AovIma
     for (const AovImage& aov : aovs) {
         const AovName& name = aov_name(aov.aov);
         const std::size_t count = static_cast<std::size_t>(channels_of(aov.aov)) * pixels;
-        if ((name.is_id ? aov.ids.size() : aov.values.size()) != count)
+        if ((name.is_uint ? aov.uints.size() : aov.values.size()) != count)
             throw Error(ExitCode::internal, "AOV " + std::string(name.name) + " is not as large as the " +
                                                 "image; please report this");
     }

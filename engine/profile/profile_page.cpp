@@ -1,13 +1,19 @@
 #include "engine/profile/profile_page.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
+#include <span>
+#include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/film/image_encode.h"
 #include "engine/film/image_format.h"
 #include "engine/film/image_io.h"
+#include "engine/profile/heat_map.h"
 #include "engine/profile/page_parts.h"
 
 namespace sahl {
@@ -41,14 +47,33 @@ std::string for_script(std::string_view json) {
     return text;
 }
 
-std::string pictures_json(std::span<const PagePicture> pictures) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+/// The address of an image that has itself within it.
+std::string data_address(const Image& image) {
     const std::filesystem::path name = "image.png";
     const OutputSettings settings;
-    for (const PagePicture& picture : pictures) {
-        const std::vector<unsigned char> png =
-            encode(name, picture.image, {}, encoding_of(name, settings), settings);
-        list.push_back({{"title", picture.title}, {"source", "data:image/png;base64," + base64(png)}});
+    return "data:image/png;base64," + base64(encode(name, image, {}, encoding_of(name, settings), settings));
+}
+
+nlohmann::ordered_json counts_json(const PageCounts& of, const Image& size) {
+    const HeatMap map = heat_map(of.counts, size.width, size.height);
+    nlohmann::ordered_json colors = nlohmann::ordered_json::array();
+    for (const auto& [red, green, blue] : heat_colors) {
+        colors.push_back(fmt::format("rgb({} {} {})", red, green, blue));
+    }
+    return {{"title", of.title},
+            {"source", data_address(map.image)},
+            {"sum", std::accumulate(of.counts.begin(), of.counts.end(), std::uint64_t{0})},
+            {"most", *std::max_element(of.counts.begin(), of.counts.end())},
+            {"pixels", of.counts.size()},
+            {"top", map.top},
+            {"colors", std::move(colors)}};
+}
+
+std::string pictures_json(const PagePictures& pictures) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    if (pictures.image) {
+        list.push_back({{"title", "Image"}, {"source", data_address(*pictures.image)}});
+        for (const PageCounts& counts : pictures.counts) list.push_back(counts_json(counts, *pictures.image));
     }
     return list.dump();
 }
@@ -62,7 +87,7 @@ std::string_view part(std::string_view name) {
 
 }  // namespace
 
-std::string profile_page(std::string_view profile_json, std::span<const PagePicture> pictures) {
+std::string profile_page(std::string_view profile_json, const PagePictures& pictures) {
     constexpr std::string_view open = "/*{";
     constexpr std::string_view close = "}*/";
     std::string page;

@@ -1,6 +1,7 @@
 #include "engine/render/launches.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,20 +19,20 @@ Launch per_block(const WaitingBatch& in_work) {
     return {compact_blocks(in_work.count), in_work.generation, in_work.count, SAHL_COMPACT_BLOCK};
 }
 
-/// The launch of a kernel that traces rays in the device's way, so many to each work-item.
+/// The launch of a kernel that traces rays so many to each work-item.
 Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, std::uint32_t rays,
                       std::uint32_t rays_of_packets, std::uint32_t rays_of_streams) {
-    if (wavefront.device.traversal() == Traversal::packet) rays = rays_of_packets;
-    if (wavefront.device.traversal() == Traversal::stream) rays = rays_of_streams;
+    if (wavefront.kernels.traversal == Traversal::packet) rays = rays_of_packets;
+    if (wavefront.kernels.traversal == Traversal::stream) rays = rays_of_streams;
     return per_ray(rays, in_work.generation, in_work.count);
 }
 
-/// A file of kernels/, and the kernel in it, that traces rays in the device's way.
-std::string traversing(const char* kernel, const Device& device) {
-    return fmt::format("{}_{}", kernel, name_of(device.traversal()));
+/// A file of kernels/, and the kernel in it, that traces rays that way.
+std::string traversing(const char* kernel, Traversal traversal) {
+    return fmt::format("{}_{}", kernel, name_of(traversal));
 }
 
-/// Launches a kernel that traces rays; counting ones add up what they visit.
+/// Launches a kernel that traces rays; counting ones add up what they visit, by ray or by work-item.
 template <class... Arguments>
 void launch_traversal(Wavefront& wavefront, Kernel& kernel, const Launch& launch,
                       KernelVisits GenerationVisits::*sums, const Arguments&... arguments) {
@@ -41,7 +42,23 @@ void launch_traversal(Wavefront& wavefront, Kernel& kernel, const Launch& launch
     }
     kernel.launch(launch, arguments..., wavefront.visits->next());
     GenerationVisits& generation = wavefront.visits->generations[launch.generation];
-    wavefront.visits->add_to(generation.*sums, launch.work_items, generation.lit);
+    const bool by_ray = wavefront.kernels.traversal == Traversal::scalar;
+    wavefront.visits->add_to(generation.*sums, by_ray ? launch.items : launch.work_items, generation.lit);
+}
+
+/// Adds what the last launch counted to its rays' pixels. `rays`: that were traced for each of the batch.
+void add_to_pixels(Wavefront& wavefront, const WaitingBatch& in_work, std::span<const std::uint32_t> rays) {
+    Buffer& ids = wavefront.queues.batches[in_work.slot].ids;
+    const auto pixel_of = ids.map<std::uint32_t>(MapMode::read, in_work.count);
+    wavefront.visits->add_to_pixels({pixel_of.data(), in_work.count}, rays);
+}
+
+/// The shadow rays of each hit.
+std::vector<std::uint32_t> shadow_rays_of(RayQueues& queues, std::uint32_t count) {
+    const auto outcomes = queues.outcomes.map<std::uint32_t>(MapMode::read, count);
+    std::vector<std::uint32_t> rays(outcomes.begin(), outcomes.end());
+    for (std::uint32_t& outcome : rays) outcome /= SAHL_OUTCOME_SHADOW_RAY;
+    return rays;
 }
 
 std::uint64_t count_hits(RayQueues& queues, std::uint32_t count) {
@@ -55,20 +72,23 @@ std::uint64_t count_hits(RayQueues& queues, std::uint32_t count) {
 
 std::uint32_t rays_in_groups(const Device& device) { return std::max(device.rays_per_item(), SAHL_LANES); }
 
-std::vector<std::string> wavefront_sources(const Device& device) {
-    return {"generate.cl", traversing("intersect", device) + ".cl", "shade.cl",
-            traversing("shadow", device) + ".cl", "compact.cl"};
+std::vector<std::string> wavefront_sources(Traversal traversal) {
+    return {"generate.cl", traversing("intersect", traversal) + ".cl", "shade.cl",
+            traversing("shadow", traversal) + ".cl", "compact.cl"};
 }
 
-Program build_wavefront_program(Device& device, bool counting) {
-    return {device, wavefront_sources(device), counting ? "-DSAHL_COUNT_VISITS" : ""};
+Program build_wavefront_program(Device& device) { return {device, wavefront_sources(device.traversal())}; }
+
+Program build_counting_program(Device& device, Traversal traversal) {
+    return {device, wavefront_sources(traversal), "-DSAHL_COUNT_VISITS"};
 }
 
-WavefrontKernels::WavefrontKernels(const Device& device, Program& program)
-    : generate(program.kernel("generate")),
-      intersect(program.kernel(traversing("intersect", device))),
+WavefrontKernels::WavefrontKernels(Traversal way, Program& program)
+    : traversal(way),
+      generate(program.kernel("generate")),
+      intersect(program.kernel(traversing("intersect", way))),
       shade(program.kernel("shade")),
-      shadow(program.kernel(traversing("shadow", device))),
+      shadow(program.kernel(traversing("shadow", way))),
       count_children(program.kernel("count_children")),
       sum_children(program.kernel("sum_children")),
       compact(program.kernel("compact")) {}
@@ -90,6 +110,7 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
                      scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
         wavefront.visits->generations[in_work.generation].hits += count_hits(q, in_work.count);
+        add_to_pixels(wavefront, in_work, std::vector<std::uint32_t>(in_work.count, 1));
     }
 }
 
@@ -113,6 +134,9 @@ void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributi
                      &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.outlines, scene.instances,
                      scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids,
                      q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
+    if (wavefront.visits != nullptr) {
+        add_to_pixels(wavefront, in_work, shadow_rays_of(q, in_work.count));
+    }
 }
 
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {

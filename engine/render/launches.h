@@ -13,17 +13,21 @@
 
 namespace sahl {
 
-/// The files of kernels/ that WavefrontKernels are in: with the device's way of traversal.
-std::vector<std::string> wavefront_sources(const Device& device);
+/// The files of kernels/ that WavefrontKernels are in.
+std::vector<std::string> wavefront_sources(Traversal traversal);
 
-/// Of which WavefrontKernels are made. `counting`: those that count visits (engine/render/visits.h) and
-/// have to be launched with a VisitCounter.
-Program build_wavefront_program(Device& device, bool counting = false);
+/// Of which WavefrontKernels are made, with the device's way of traversal.
+Program build_wavefront_program(Device& device);
+
+/// The same with kernels that count visits (engine/render/visits.h) and have to be launched with a
+/// VisitCounter.
+Program build_counting_program(Device& device, Traversal traversal);
 
 /// The kernels of kernels/*.cl. What no launch asks for is never compiled.
 struct WavefrontKernels {
-    WavefrontKernels(const Device& device, Program& program);
+    WavefrontKernels(Traversal traversal, Program& program);
 
+    Traversal traversal;
     Kernel generate, intersect, shade, shadow;
     Kernel count_children, sum_children, compact;
 };

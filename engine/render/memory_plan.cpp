@@ -10,6 +10,7 @@
 #include "engine/render/host_scene.h"
 #include "engine/render/ray_queues.h"
 #include "engine/render/trace_aovs.h"
+#include "engine/render/visit_counter.h"
 
 namespace sahl {
 namespace {
@@ -26,8 +27,12 @@ MemoryPlan plan_for(const SceneMemory& scene, const MemoryRequest& request, std:
     plan.scene = scene;
     plan.ray_budget = rays;
     plan.ray_queues = ray_queue_bytes(batch, request.depth, request.light_count);
-    if (request.aovs > 0) plan.aov_queues = aov_queue_bytes(aov_batch);
     plan.film = HostMemory::mapped_bytes(request.pixels * film_pixel_bytes);
+    if (request.aovs > 0) plan.aov_queues = aov_queue_bytes(aov_batch);
+    if (request.counts_costs) {
+        const std::uint64_t counts = visit_counter_bytes(ray_capacity(batch));
+        plan.aov_queues = std::max(plan.aov_queues, plan.ray_queues + plan.film + counts);
+    }
     plan.image = request.pixels * 3 * sizeof(float);
     plan.aovs = request.aovs;
     plan.encoder = request.encoder;
@@ -49,6 +54,12 @@ MemoryRequest memory_request(const Device& device, const RenderSettings& setting
     request.depth = settings.depth;
     request.light_count = light_count;
     request.ray_budget = std::min(settings.ray_budget, most_rays(device, light_count));
+    return request;
+}
+
+MemoryRequest with_aovs(MemoryRequest request, std::span<const Aov> aovs) {
+    for (const Aov aov : aovs) request.aovs += aov_pixel_bytes(aov) * request.pixels;
+    request.counts_costs = std::any_of(aovs.begin(), aovs.end(), is_cost);
     return request;
 }
 

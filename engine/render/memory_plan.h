@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "engine/accel/bvh.h"
 #include "engine/device/device.h"
+#include "engine/film/aov.h"
 #include "engine/render/render_settings.h"
 #include "engine/render/scene_memory.h"
 #include "engine/scene/scene.h"
@@ -18,13 +20,17 @@ struct MemoryRequest {
     int depth = 0;              ///< the largest, of several images
     std::uint32_t light_count = 0;
     std::uint32_t ray_budget = 0;  ///< the most rays of a batch
-    std::uint64_t aovs = 0;        ///< bytes of the AOV images
+    std::uint64_t aovs = 0;        ///< bytes of the AOV images, see with_aovs()
+    bool counts_costs = false;     ///< an AOV is of what pixels cost
     std::uint64_t encoder = 0;     ///< bytes of encoding the largest file, see encoder_bytes()
     bool writes_behind = false;    ///< an image is written while the next one is traced
 };
 
 /// What `settings` ask of `device` for a scene of `light_count` lights, without AOVs and files.
 MemoryRequest memory_request(const Device& device, const RenderSettings& settings, std::uint32_t light_count);
+
+/// The request with `aovs` as well.
+MemoryRequest with_aovs(MemoryRequest request, std::span<const Aov> aovs);
 
 /// Bytes by what they are for, and how many rays a batch may have with them.
 struct MemoryPlan {

@@ -1,6 +1,7 @@
 #include "engine/render/renderer.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,7 +45,10 @@ std::uint64_t pixel_count(const Crop& crop) {
 
 struct Renderer::Impl {
     Impl(Device& on, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
-        : device(on), cameras(scene.cameras), program(build_wavefront_program(on)), kernels(on, program) {
+        : device(on),
+          cameras(scene.cameras),
+          program(build_wavefront_program(on)),
+          kernels(on.traversal(), program) {
         test_before_first_use(on, program, kernels);
         device_scene = make_device_scene(on, scene, job, quality);
     }
@@ -54,6 +58,50 @@ struct Renderer::Impl {
         const std::uint32_t most = most_rays(device, device_scene.constants.light_count);
         return static_cast<std::uint32_t>(
             std::min({std::uint64_t{settings.ray_budget}, samples, std::uint64_t{most}}));
+    }
+
+    /// Renders by kernels that count, walking through the trees that way, by pixel what `by_pixel` has room
+    /// for.
+    VisitCounter count(const RenderSettings& settings, Traversal traversal, PixelVisits by_pixel,
+                       const std::stop_token& stop) {
+        const Crop crop = crop_of(settings);
+        const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
+        Program counting = build_counting_program(device, traversal);
+        WavefrontKernels counting_kernels(traversal, counting);
+        Film film(device.memory(), crop.x1 - crop.x0, crop.y1 - crop.y0);
+        RayQueues queues(device, batch_size(settings, samples), settings.depth,
+                         device_scene.constants.light_count);
+        VisitCounter visits(device, queues.capacity, settings.depth);
+        visits.pixels = std::move(by_pixel);
+        Wavefront wavefront{device, counting_kernels, device_scene, queues, &visits};
+        trace_waves(wavefront, camera_constants(cameras[settings.camera], settings.resolution), settings,
+                    crop, film, {}, stop, {});
+        return visits;
+    }
+
+    /// Ray by ray: of packets nobody could say whose nodes they open.
+    PixelVisits count_by_pixel(const RenderSettings& settings, std::span<const Aov> costs,
+                               const std::stop_token& stop) {
+        const auto pixels = [&](Aov aov) {
+            const bool wanted = std::find(costs.begin(), costs.end(), aov) != costs.end();
+            return std::vector<std::uint32_t>(wanted ? pixel_count(crop_of(settings)) : 0);
+        };
+        return count(settings, Traversal::scalar, {pixels(Aov::cost_rays), pixels(Aov::cost_nodes)}, stop)
+            .pixels;
+    }
+
+    std::vector<AovImage> describe(const RenderSettings& settings, std::span<const Aov> aovs) {
+        const Crop crop = crop_of(settings);
+        RayQueues queues(device, batch_size(settings, pixel_count(crop)), 0, 0);
+        Wavefront wavefront{device, kernels, device_scene, queues};
+        if (!aov_program) aov_program.emplace(build_aov_program(device));
+        Kernel describing = aov_program->kernel("describe");
+        test_before_first_use(device, *aov_program, describing, kernels);
+        std::vector<AovImage> images =
+            trace_aovs(wavefront, describing, camera_constants(cameras[settings.camera], settings.resolution),
+                       settings, crop, aovs);
+        aov_program->store_binary();
+        return images;
     }
 
     Device& device;
@@ -112,33 +160,28 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
 }
 
 std::vector<GenerationVisits> Renderer::count_visits(const RenderSettings& settings) {
-    const Crop crop = crop_of(settings);
-    const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
-    Program program = build_wavefront_program(impl_->device, true);
-    WavefrontKernels kernels(impl_->device, program);
-    Film film(impl_->device.memory(), crop.x1 - crop.x0, crop.y1 - crop.y0);
-    RayQueues queues(impl_->device, impl_->batch_size(settings, samples), settings.depth,
-                     impl_->device_scene.constants.light_count);
-    VisitCounter visits(impl_->device, queues.capacity, settings.depth);
-    Wavefront wavefront{impl_->device, kernels, impl_->device_scene, queues, &visits};
-    trace_waves(wavefront, camera_constants(impl_->cameras[settings.camera], settings.resolution), settings,
-                crop, film, {}, {}, {});
-    return visits.generations;
+    return impl_->count(settings, impl_->device.traversal(), {}, {}).generations;
 }
 
-std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std::span<const Aov> aovs) {
-    const Crop crop = crop_of(settings);
-    const device::CameraConstants camera =
-        camera_constants(impl_->cameras[settings.camera], settings.resolution);
-    const std::uint64_t pixels = pixel_count(crop);
-    RayQueues queues(impl_->device, impl_->batch_size(settings, pixels), 0, 0);
-    Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, queues};
-    if (!impl_->aov_program) impl_->aov_program.emplace(build_aov_program(impl_->device));
-    Program& program = *impl_->aov_program;
-    Kernel describe = program.kernel("describe");
-    test_before_first_use(impl_->device, program, describe, impl_->kernels);
-    std::vector<AovImage> images = trace_aovs(wavefront, describe, camera, settings, crop, aovs);
-    program.store_binary();
+std::vector<AovImage> Renderer::render_aovs(const RenderSettings& settings, std::span<const Aov> aovs,
+                                            const std::stop_token& stop) {
+    std::vector<Aov> of_first_hits;
+    std::copy_if(aovs.begin(), aovs.end(), std::back_inserter(of_first_hits),
+                 [](Aov aov) { return !is_cost(aov); });
+    std::vector<AovImage> described;
+    if (!of_first_hits.empty()) described = impl_->describe(settings, of_first_hits);
+    PixelVisits costs;
+    if (of_first_hits.size() < aovs.size()) costs = impl_->count_by_pixel(settings, aovs, stop);
+
+    std::vector<AovImage> images;
+    auto next = described.begin();
+    for (const Aov aov : aovs) {
+        if (is_cost(aov)) {
+            images.push_back({aov, {}, std::move(aov == Aov::cost_rays ? costs.rays : costs.nodes)});
+        } else {
+            images.push_back(std::move(*next++));
+        }
+    }
     return images;
 }
 

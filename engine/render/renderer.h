@@ -77,8 +77,10 @@ public:
     /// What the rays of the image of `settings` visit, by generation. Compiles kernels that count.
     std::vector<GenerationVisits> count_visits(const RenderSettings& settings);
 
-    /// What `aovs` ask for, of the camera, the crop and the samples of `settings`.
-    std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs);
+    /// What `aovs` ask for, in their order, of the camera, the crop and the samples of `settings`; costs also
+    /// of the depth. Costs take a render by kernels that count, which heeds `stop` as render() does.
+    std::vector<AovImage> render_aovs(const RenderSettings& settings, std::span<const Aov> aovs,
+                                      const std::stop_token& stop = {});
 
     /// Where the light of pixel (x, y) of the image of `settings` comes from, ray by ray: the same rays, bit
     /// for bit, that render() adds up there. Its crop does not count.

@@ -27,6 +27,9 @@ Arrays arrays_of(Aov aov) {
             return {SAHL_AOV_INSTANCE, 1, true};
         case Aov::material_id:
             return {SAHL_AOV_MATERIAL, 1, true};
+        case Aov::cost_rays:
+        case Aov::cost_nodes:
+            break;  // no camera ray's first hit knows them
     }
     return {};
 }
@@ -38,7 +41,7 @@ std::vector<AovImage> blank_images(std::span<const Aov> aovs, std::size_t pixels
         AovImage& image = images.emplace_back();
         image.aov = aov;
         if (arrays.ids) {
-            image.ids.resize(pixels);
+            image.uints.resize(pixels);
         } else {
             image.values.resize(arrays.count * pixels);
         }
@@ -96,7 +99,7 @@ std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
             for (std::size_t i = 0; i < wave.count; ++i) {
                 const std::size_t pixel = pixel_of[i];
                 if (arrays.ids) {
-                    image.ids[pixel] = id[arrays.first * capacity + i];
+                    image.uints[pixel] = id[arrays.first * capacity + i];
                     continue;
                 }
                 for (std::size_t c = 0; c < arrays.count; ++c) {

@@ -16,7 +16,7 @@ Program build_aov_program(Device& device);
 /// Device memory while AOVs are traced in batches of `rays`.
 std::size_t aov_queue_bytes(std::uint32_t rays);
 
-/// `aovs` of sample 0 of the crop's pixels, in their order.
+/// `aovs`, none of them is_cost(), of sample 0 of the crop's pixels, in their order.
 std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
                                  const device::CameraConstants& camera, const RenderSettings& settings,
                                  const Crop& crop, std::span<const Aov> aovs);

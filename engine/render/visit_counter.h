@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/device/buffer.h"
@@ -11,23 +12,32 @@
 
 namespace sahl {
 
+/// Device memory of a VisitCounter.
+std::size_t visit_counter_bytes(std::size_t places);
+
 /// Where counting kernels put their counts, and the sums so far.
 class VisitCounter {
 public:
-    /// For launches of `work_items` at most and a ray tree of `depth` generations after the first.
-    VisitCounter(Device& device, std::size_t work_items, int depth);
+    /// For launches that count in `places` at most, rays or work-items, and a ray tree of `depth` generations
+    /// after the first.
+    VisitCounter(Device& device, std::size_t places, int depth);
 
     /// The kernels' last argument, zeroed for the next launch. Waits for the queue.
     const Buffer& next();
 
-    /// Adds the counts of the last launch, of `work_items`, to `sums`. Waits for it.
-    void add_to(KernelVisits& sums, std::size_t work_items, std::uint64_t& lit);
+    /// Adds the counts of the last launch, in `places`, to `sums`. Waits for it.
+    void add_to(KernelVisits& sums, std::size_t places, std::uint64_t& lit);
+
+    /// Adds the last launch's counts by ray to the rays' pixels; `rays`: what each of them stands for.
+    void add_to_pixels(std::span<const std::uint32_t> pixel_of, std::span<const std::uint32_t> rays);
 
     std::vector<GenerationVisits> generations;
+    /// Of kernels that count by ray alone.
+    PixelVisits pixels;
 
 private:
     Buffer counts_;
-    std::size_t work_items_;
+    std::size_t places_;
 };
 
 }  // namespace sahl

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace sahl {
 
@@ -18,6 +19,13 @@ struct GenerationVisits {
     KernelVisits shadow;
     std::uint64_t hits = 0;  ///< rays that meet something
     std::uint64_t lit = 0;   ///< shadow rays that reach their light
+};
+
+/// Sums by pixel, over its samples, generations and lights, in the order of a film; 2^32 - 1 stands for
+/// more, too. What is empty is not counted.
+struct PixelVisits {
+    std::vector<std::uint32_t> rays;  ///< and shadow rays
+    std::vector<std::uint32_t> nodes;
 };
 
 }  // namespace sahl

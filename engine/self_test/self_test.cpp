@@ -139,7 +139,7 @@ SelfTestReport self_test::run_waves(Device& device, WavefrontKernels& kernels,
 
 SelfTestReport run_self_test(Device& device) {
     Program program = build_wavefront_program(device);
-    WavefrontKernels kernels(device, program);
+    WavefrontKernels kernels(device.traversal(), program);
     Bench bench(device, kernels);
     SelfTestReport report = test_wavefront(bench, test_waves());
     if (report.failed() != nullptr) return report;

@@ -130,10 +130,10 @@ bool test_describe(KernelTest& test, Wavefront& wavefront, Kernel& describe, con
         Difference difference;
         const auto depth = static_cast<double>(images[0].values[i]);
         const auto hit = reference.closest_hit(ray);
-        difference.exact("primitive id", hit ? hit->id.primitive : no_aov_id, images[3].ids[i]);
-        difference.exact("instance id", hit ? hit->id.instance : no_aov_id, images[4].ids[i]);
+        difference.exact("primitive id", hit ? hit->id.primitive : no_aov_id, images[3].uints[i]);
+        difference.exact("instance id", hit ? hit->id.instance : no_aov_id, images[4].uints[i]);
         if (!hit) {
-            difference.exact("material id", no_aov_id, images[5].ids[i]);
+            difference.exact("material id", no_aov_id, images[5].uints[i]);
             difference.number("depth", oracle::infinity, depth);
             difference.vector("normal", dvec3(0), found_vector(1, i));
             difference.vector("albedo", dvec3(0), found_vector(2, i));
@@ -141,7 +141,7 @@ bool test_describe(KernelTest& test, Wavefront& wavefront, Kernel& describe, con
         }
         const Material& material = reference.material_of(*hit);
         const double cosine = std::abs(glm::dot(hit->ng, ray.direction));
-        difference.exact("material id", scene.primitives[hit->id.primitive].material, images[5].ids[i]);
+        difference.exact("material id", scene.primitives[hit->id.primitive].material, images[5].uints[i]);
         difference.number("depth", glm::dot(hit->position - wave.camera.eye, forward), depth, cosine);
         difference.vector("normal", shading_normal(material, *hit, ray.direction), found_vector(1, i));
         difference.vector("albedo", colors_at(scene, *hit).diffuse, found_vector(2, i));

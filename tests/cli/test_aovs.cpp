@@ -25,14 +25,15 @@ OIIO::ImageSpec spec_of(const fs::path& path) {
     return input->spec();
 }
 
-std::vector<float> channel(const fs::path& path, const std::string& name) {
+template <class T = float>
+std::vector<T> channel(const fs::path& path, const std::string& name) {
     const auto input = OIIO::ImageInput::open(path.string());
     REQUIRE(input);
     const OIIO::ImageSpec& spec = input->spec();
     const int index = spec.channelindex(name);
     REQUIRE(index >= 0);
-    std::vector<float> values(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
-    REQUIRE(input->read_image(0, 0, index, index + 1, OIIO::TypeDesc::FLOAT, values.data()));
+    std::vector<T> values(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+    REQUIRE(input->read_image(0, 0, index, index + 1, OIIO::BaseTypeFromC<T>::value, values.data()));
     return values;
 }
 
@@ -59,6 +60,22 @@ TEST_CASE("aovs: --aov adds its channels to EXR files alone", "[cli]") {
     CHECK(channel(folder / "all.exr", "id.primitive").at(31 * 48) == 0);
     // compare takes the beauty of both.
     CHECK(run_sahl_in(folder.path(), {"compare", "all.exr", "plain.exr", "-q"}).status == 0);
+}
+
+TEST_CASE("aovs: costs are of each depth", "[cli]") {
+    const TemporaryFolder folder;
+    REQUIRE(
+        render_in(folder.path(), {"-o", "d{depth}.exr", "--aov", "cost.rays,Z,cost.nodes", "--depth", "0,2"})
+            .status == 0);
+    CHECK(spec_of(folder / "d0.exr").nchannels == 6);
+    CHECK(channel(folder / "d0.exr", "Z") == channel(folder / "d2.exr", "Z"));
+    const auto shallow = channel<std::uint32_t>(folder / "d0.exr", "cost.rays");
+    const auto deep = channel<std::uint32_t>(folder / "d2.exr", "cost.rays");
+    CHECK(*std::min_element(shallow.begin(), shallow.end()) >= 1);
+    CHECK(shallow != deep);
+    CHECK(std::equal(shallow.begin(), shallow.end(), deep.begin(), std::less_equal<>()));
+    const auto nodes = channel<std::uint32_t>(folder / "d2.exr", "cost.nodes");
+    CHECK(std::equal(deep.begin(), deep.end(), nodes.begin(), std::less_equal<>()));  // each opens the root
 }
 
 TEST_CASE("aovs: AOVs of a crop are that part of the whole", "[cli]") {

@@ -111,10 +111,20 @@ TEST_CASE("profile --export-html: the page has the measured profile and the imag
         const root = document.documentElement, image = document.images[0];
         root.dataset.image = image.naturalWidth + "x" + image.naturalHeight;
         root.dataset.wall = document.querySelector("[data-key=wall_ms]").dataset.value;
+        root.dataset.rays = document.querySelectorAll(".scale")[0].dataset.sum;
+        root.dataset.maps = [...document.querySelectorAll("figcaption b")].map(title => title.textContent).join();
         root.dataset.rows = document.querySelectorAll("#rows tbody tr").length;
     )"});
     CHECK(shown.messages == "");
     CHECK(shown.data("image") == "48x32");
+    CHECK(shown.data("maps") == "Image,Rays,Node visits");
+    // The pixels' rays are those that were measured.
+    std::uint64_t rays = 0;
+    for (const auto& row : measured.at("rows")) {
+        if (row.at("kernel") == "intersect" || row.at("kernel") == "shadow")
+            rays += row.at("rays_in").get<std::uint64_t>();
+    }
+    CHECK(shown.data("rays") == std::to_string(rays));
     CHECK(std::stod(shown.data("wall")) == measured.at("wall_ms").get<double>());
     CHECK(shown.data("rows") == std::to_string(measured.at("rows").size()));
 }

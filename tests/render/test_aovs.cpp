@@ -34,9 +34,9 @@ Pixel pixel_of(const std::vector<AovImage>& images, std::size_t i) {
     return {static_cast<double>(images[0].values.at(i)),
             vector(1),
             vector(2),
-            images[3].ids.at(i),
-            images[4].ids.at(i),
-            images[5].ids.at(i)};
+            images[3].uints.at(i),
+            images[4].uints.at(i),
+            images[5].uints.at(i)};
 }
 
 /// Pixels of `images` (of `crop`) that are not the oracle's; at edges either side is right.
@@ -104,9 +104,9 @@ TEST_CASE("render: output variables are the oracle's", "[render][oracle]") {
         REQUIRE(images.size() == std::size(kAll));
         for (std::size_t i = 0; i < images.size(); ++i) CHECK((images[i].aov == kAll[i]));
         CHECK(wrong_pixels(scene, settings, {0, 0, 96, 64}, images) == 0);
-        CHECK(std::count(images[3].ids.begin(), images[3].ids.end(), no_aov_id) > 100);
-        CHECK(std::count(images[4].ids.begin(), images[4].ids.end(), 0U) > 100);
-        CHECK(std::count(images[4].ids.begin(), images[4].ids.end(), 3U) > 10);
+        CHECK(std::count(images[3].uints.begin(), images[3].uints.end(), no_aov_id) > 100);
+        CHECK(std::count(images[4].uints.begin(), images[4].uints.end(), 0U) > 100);
+        CHECK(std::count(images[4].uints.begin(), images[4].uints.end(), 3U) > 10);
     }
     SECTION("of a crop, in small batches") {
         settings.crop = Crop{17, 9, 90, 60};
@@ -122,8 +122,16 @@ TEST_CASE("render: output variables are the oracle's", "[render][oracle]") {
         const auto alone = renderer.render_aovs(settings, one);
         REQUIRE(alone.size() == 1);
         CHECK(alone[0].values.empty());
-        CHECK(alone[0].ids == renderer.render_aovs(settings, kAll)[4].ids);
+        CHECK(alone[0].uints == renderer.render_aovs(settings, kAll)[4].uints);
         CHECK(renderer.render_aovs(settings, {}).empty());
+    }
+    SECTION("with costs between them, in the order asked for") {
+        const Aov mixed[] = {Aov::cost_nodes, Aov::depth, Aov::cost_rays, Aov::instance_id};
+        const auto images = renderer.render_aovs(settings, mixed);
+        REQUIRE(images.size() == 4);
+        for (std::size_t i = 0; i < 4; ++i) CHECK((images[i].aov == mixed[i]));
+        CHECK(images[1].values == renderer.render_aovs(settings, kAll)[0].values);
+        CHECK(images[0].uints != images[2].uints);
     }
     SECTION("of many samples: the first's, within the pixel") {
         settings.spp = 16;

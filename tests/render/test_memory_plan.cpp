@@ -59,8 +59,7 @@ Contract render_within(std::uint64_t limit, const Scene& scene, RenderSettings s
                        std::span<const Aov> aovs = {}) {
     Device device;
     device.memory().set_limit(limit);
-    MemoryRequest request = request_for(device, settings, scene);
-    for (const Aov aov : aovs) request.aovs += aov_pixel_bytes(aov) * request.pixels;
+    const MemoryRequest request = with_aovs(request_for(device, settings, scene), aovs);
     Renderer renderer(device, scene, request);
     Contract result;
     result.plan = renderer.memory_plan();
@@ -148,9 +147,11 @@ TEST_CASE("memory: what is known before the trees are built bounds what they are
 
 TEST_CASE("memory: no more is held at one time than was planned", "[memory]") {
     const std::vector<Aov> all{Aov::depth, Aov::normal, Aov::albedo, Aov::primitive_id};
+    const std::vector<Aov> costs{Aov::cost_rays, Aov::cost_nodes};
     for (const Scene& scene : {every_feature(), hall_of_glass(), Scene()}) {
         for (const int size : {16, 200}) {
-            for (const std::span<const Aov> aovs : {std::span<const Aov>(), std::span<const Aov>(all)}) {
+            for (const std::span<const Aov> aovs :
+                 {std::span<const Aov>(), std::span<const Aov>(all), std::span<const Aov>(costs)}) {
                 const Contract result = render_within(1U << 30U, scene, square_settings(size, 3), aovs);
                 INFO("size " << size << ", AOVs " << aovs.size());
                 CHECK(result.peak <= result.plan.total());

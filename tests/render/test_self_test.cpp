@@ -57,7 +57,7 @@ TEST_CASE("self-test: right kernels are not refused, wherever rays go", "[self_t
     }
     Device& device = test_device();
     Program program = build_wavefront_program(device);
-    WavefrontKernels kernels(device, program);
+    WavefrontKernels kernels(device.traversal(), program);
     const SelfTestReport report = self_test::run_waves(device, kernels, waves);
     for (const KernelTest& test : report.kernels) {
         INFO(test.kernel << ": " << test.checked << " checked, worst " << test.worst);

@@ -1,5 +1,9 @@
 // Counts of what rays visit: scenes whose trees can be walked by hand.
+#include <numeric>
+
 #include <catch2/catch.hpp>
+
+#include "engine/self_test/every_feature.h"
 
 #include "tests/render/rendered.h"
 
@@ -20,6 +24,12 @@ Scene one_sphere() {
     scene.lights.push_back(light);
     return scene;
 }
+
+std::uint64_t sum_of(const std::vector<std::uint32_t>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+constexpr Aov costs[] = {Aov::cost_rays, Aov::cost_nodes};
 
 }  // namespace
 
@@ -47,6 +57,59 @@ TEST_CASE("visits: rays that miss everything open the root alone", "[render]") {
     CHECK(visits[0].intersect.nodes >= 64 * 64 / 128);
     CHECK(visits[0].intersect.leaves == 0);
     CHECK(visits[0].shadow.nodes == 0);
+}
+
+TEST_CASE("visits: a pixel of one sphere costs a ray and a shadow ray, each the root", "[render]") {
+    Scene scene = one_sphere();
+    Renderer renderer(test_device(), scene);
+    RenderSettings settings = square_settings(16, 0);
+    const auto images = renderer.render_aovs(settings, costs);
+    REQUIRE(images.size() == 2);
+    CHECK(images[0].uints == std::vector<std::uint32_t>(256, 2));
+    CHECK(images[1].uints == std::vector<std::uint32_t>(256, 2));
+    settings.spp = 3;
+    CHECK(renderer.render_aovs(settings, costs)[1].uints == std::vector<std::uint32_t>(256, 6));
+    settings.samples = {1, 2};
+    CHECK(renderer.render_aovs(settings, costs)[0].uints == std::vector<std::uint32_t>(256, 2));
+
+    scene.cameras[0].look_at = {0, 0, 1};  // away from it
+    renderer.set_scene(scene);
+    CHECK(renderer.render_aovs(settings, costs)[0].uints == std::vector<std::uint32_t>(256, 1));
+}
+
+TEST_CASE("visits: costs of pixels are the rays of the render, and the nodes of rays one by one",
+          "[render]") {
+    const Scene scene = every_feature();
+    Renderer renderer(test_device(), scene);
+    RenderSettings settings = square_settings(48, 3);
+    settings.spp = 2;
+    const auto images = renderer.render_aovs(settings, costs);
+    std::uint64_t rays = 0;
+    for (const GenerationCounts& counts : render(renderer, settings).statistics.generations) {
+        rays += counts.rays + counts.shadow_rays;
+    }
+    CHECK(sum_of(images[0].uints) == rays);
+
+    DeviceOptions ray_by_ray;
+    ray_by_ray.traversal = Traversal::scalar;
+    Device one_by_one(ray_by_ray);
+    std::uint64_t nodes = 0;
+    for (const GenerationVisits& visits : Renderer(one_by_one, scene).count_visits(settings)) {
+        nodes += visits.intersect.nodes + visits.shadow.nodes;
+    }
+    CHECK(sum_of(images[1].uints) == nodes);
+
+    // In whatever batches, and of a crop that part.
+    settings.ray_budget = 100;
+    settings.crop = Crop{7, 11, 40, 30};
+    const auto part = renderer.render_aovs(settings, costs);
+    int wrong = 0;
+    for (std::size_t i = 0; i < 33 * 19; ++i) {
+        const std::size_t whole = (11 + i / 33) * 48 + 7 + i % 33;
+        wrong +=
+            part[0].uints.at(i) != images[0].uints[whole] || part[1].uints.at(i) != images[1].uints[whole];
+    }
+    CHECK(wrong == 0);
 }
 
 }  // namespace sahl::tests

@@ -79,10 +79,11 @@ function drawFrame(target, profile) {
     for (const row of profile.kernel_totals) sums.set(row.kernel, (sums.get(row.kernel) ?? 0) + row.ms_median);
     const steps = new Set(profile.repetitions.flatMap(repetition => Object.keys(repetition.exposed)));
     const parts = [...sums].map(([kernel, ms]) => [kernel, ms, {kernel}]);
-    for (const step of steps) {
+    const host = [...steps].map(step => {
         const ms = median(profile.repetitions.map(repetition => repetition.exposed[step] ?? 0));
-        parts.push([step + " (host)", ms, {step}]);
-    }
+        return [step + " (host)", ms, {step}];
+    });
+    parts.push(...host.sort((a, b) => b[1] - a[1]));
     parts.push(["unattributed", profile.unattributed_ms, {step: ""}]);
     const whole = Math.max(profile.wall_ms, parts.reduce((sum, part) => sum + part[1], 0));
     const segments = parts.map(([label, ms, data]) => segment(label, ms, whole, whole, data));

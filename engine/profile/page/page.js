@@ -79,7 +79,7 @@ function drawSummary(target, profile) {
     ];
     for (const [key, value, unit, label] of tiles) {
         target.append(element("div", {class: "tile", "data-key": key, "data-value": value},
-                              element("b", {}, number(value) + unit), element("span", {}, label)));
+                              element("b", {}, number(value), element("small", {}, unit)), element("span", {}, label)));
     }
 }
 
@@ -94,12 +94,21 @@ function drawEnvironment(target, profile) {
     target.append(element("table", {}, body));
 }
 
+/// The colours of a map of counts, from 0 to its top, and what its pixels come to.
+function mapLegend({sum, most, pixels, top, colors}) {
+    const data = {class: "scale", "data-sum": sum, "data-most": most, "data-top": top};
+    return element("div", data, element("i", {style: `background: linear-gradient(to right, ${colors.join(", ")})`}),
+                   element("span", {}, "0"), element("span", {}, number(top) + (most > top ? " and more" : "")),
+                   element("em", {}, `${number(sum / pixels)} a pixel, ${number(most)} at most, ${number(sum)} in all`));
+}
+
 function drawPictures(target, images) {
-    for (const {title, source} of images) {
-        target.append(element("h2", {}, title),
-                      element("figure", {}, element("img", {src: source, alt: title})));
+    for (const image of images) {
+        const caption = element("figcaption", {}, element("b", {}, image.title));
+        if (image.colors) caption.append(mapLegend(image));
+        target.append(element("figure", {}, element("img", {src: image.source, alt: image.title}), caption));
     }
-    target.hidden = images.length === 0;
+    target.parentElement.hidden = images.length === 0;
 }
 
 {

@@ -48,8 +48,8 @@ AovImage layer(Aov aov) {
     AovImage image{.aov = aov};
     const std::size_t channels = std::max<std::size_t>(aov_name(aov).components.size(), 1);
     for (std::size_t i = 0; i < pixel_count; ++i) {
-        if (aov_name(aov).is_id) {
-            image.ids.push_back(id_of(aov, i));
+        if (aov_name(aov).is_uint) {
+            image.uints.push_back(id_of(aov, i));
         } else {
             for (std::size_t c = 0; c < channels; ++c) image.values.push_back(value_of(aov, i, c));
         }
@@ -130,6 +130,8 @@ TEST_CASE("image layers: names, types and values of all AOVs", "[image_io]") {
         {"id.primitive", OIIO::TypeDesc::UINT},
         {"id.instance", OIIO::TypeDesc::UINT},
         {"id.material", OIIO::TypeDesc::UINT},
+        {"cost.rays", OIIO::TypeDesc::UINT},
+        {"cost.nodes", OIIO::TypeDesc::UINT},
     };
     REQUIRE(channels.size() == expected.size());
     for (const auto& [name, channel_type] : expected) {
@@ -157,7 +159,7 @@ TEST_CASE("image layers: names, types and values of all AOVs", "[image_io]") {
         }
         wrong += differ(channels.at("Z").values[i], value_of(Aov::depth, i, 0), 0);
         for (const AovName& name : aov_names)
-            if (name.is_id) wrong += channels.at(std::string(name.name)).ids[i] != id_of(name.aov, i);
+            if (name.is_uint) wrong += channels.at(std::string(name.name)).ids[i] != id_of(name.aov, i);
     }
     CHECK(wrong == 0);
 }

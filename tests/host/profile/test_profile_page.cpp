@@ -5,6 +5,10 @@
 #include <cmath>
 #include <regex>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "engine/profile/heat_map.h"
 #include "engine/profile/profile_page.h"
 #include "tests/support/browser.h"
 #include "tests/support/made_profile.h"
@@ -15,8 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string page_of(const Json& profile) {
-    const std::vector<PagePicture> pictures{{"Image </script><b>", Image{2, 1, 3, {0, 0, 0, 1, 1, 1}}}};
-    return profile_page(profile.dump(), pictures);
+    return profile_page(profile.dump(),
+                        {Image{2, 1, 3, {0, 0, 0, 1, 1, 1}}, {{"Rays </script><b>", {0, 7}}}});
 }
 
 /// What lies in the element with this id, up to the next that has one.
@@ -179,6 +183,44 @@ TEST_CASE("profile page: a heading sorts its table, what is not known last", "[p
     CHECK(cells[cells.size() - 24 + 5][1].empty());
 }
 
+TEST_CASE("profile page: costs of pixels are a map from dark to bright, with their sum", "[profile]") {
+    if (skipped()) return;
+    const std::string script = R"(
+        const image = document.images[1], canvas = document.createElement("canvas");
+        Object.assign(canvas, {width: image.naturalWidth, height: image.naturalHeight});
+        const context = canvas.getContext("2d");
+        context.drawImage(image, 0, 0);
+        document.documentElement.dataset.colors = [...context.getImageData(0, 0, 2, 1).data].join();
+    )";
+    const BrowsedPage page = browse(page_of(made_profile()), {.script = script});
+    CHECK(page.messages == "");
+    const auto& low = heat_colors.front();
+    const auto& high = heat_colors.back();
+    CHECK(page.data("colors") == fmt::format("{},255,{},255", fmt::join(low, ","), fmt::join(high, ",")));
+    const std::string pictures = part_of(page.dom, "pictures");
+    CHECK_THAT(pictures, Catch::Contains("data-sum=\"7\" data-most=\"7\" data-top=\"7\"") &&
+                             Catch::Contains("3.500 a pixel, 7 at most, 7 in all") &&
+                             Catch::Contains("Rays &lt;/script&gt;&lt;b&gt;"));
+}
+
+TEST_CASE("profile page: few costly pixels do not darken the map", "[profile]") {
+    std::vector<std::uint32_t> counts(1000, 4);
+    counts[17] = 0;
+    counts[18] = 2;
+    counts[500] = 100000;
+    const HeatMap map = heat_map(counts, 100, 10);
+    CHECK(map.top == 4);
+    const auto color = [&map](std::size_t i) {
+        const float* at = map.image.pixels.data() + 3 * i;
+        return std::vector<float>(at, at + 3);
+    };
+    const auto sum = [&color](std::size_t i) { return color(i)[0] + color(i)[1] + color(i)[2]; };
+    CHECK(color(500) == color(0));
+    CHECK(sum(17) < sum(18));
+    CHECK(sum(18) < sum(0));
+    CHECK(heat_map(std::vector<std::uint32_t>(4, 0), 2, 2).top == 1);
+}
+
 TEST_CASE("profile page: it fits a phone, and is readable in the light and in the dark", "[profile]") {
     if (skipped()) return;
     const bool dark = GENERATE(false, true);
@@ -209,7 +251,7 @@ TEST_CASE("profile page: it fits a phone, and is readable in the light and in th
     CHECK((std::stod(page.data("back")) < 0.1) == dark);
     CHECK(std::stod(page.data("contrast")) >= 7);
     CHECK(std::stod(page.data("faint")) >= 4.5);  // WCAG 2.2, AA
-    CHECK(page.data("pictures") == "2x1");
+    CHECK(page.data("pictures") == "2x1,2x1");
 }
 
 }  // namespace
