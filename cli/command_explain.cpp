@@ -48,8 +48,11 @@ RenderSettings settings_of_pixel(const ExplainOptions& options, const Scene& sce
 ExitCode explain(const ExplainOptions& options, const CommonOptions& common) {
     const Scene scene = load_scene(options.render.scene, options.render.loading);
     const RenderSettings settings = settings_of_pixel(options, scene);
-    Device device(common.device);
+    DeviceOptions device_options = common.device;
+    device_options.traversal = options.render.traversal;
+    Device device(device_options);
     take_driver_failures();
+    device.memory().set_limit(options.render.max_memory.value_or(physical_memory_bytes()));
     Renderer renderer(device, scene, {}, options.render.build_quality);
     const ExplainedPixel pixel{scene,           options.render,
                                settings,        options.pixel.x,
@@ -75,6 +78,8 @@ Command add_explain_command(CLI::App& app, CommonOptions& common) {
         ->required();
     add_scene_options(*command, options->render.loading);
     add_view_options(*command, options->render);
+    add_tree_options(*command, options->render.build_quality, options->render.traversal);
+    add_memory_limit(*command, options->render.max_memory);
     add_device_options(*command, common);
     add_common_options(*command, common);
     command->footer(

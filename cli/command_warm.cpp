@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/driver_failure.h"
 #include "cli/options.h"
+#include "cli/render_options.h"
 #include "cli/standard_output.h"
 #include "engine/self_test/self_test.h"
 
@@ -16,11 +17,14 @@ namespace {
 struct WarmOptions {
     std::string scene;
     LoadOptions loading;
+    std::optional<Traversal> traversal;
 };
 
 ExitCode warm(const WarmOptions& options, const CommonOptions& common) {
     if (!options.scene.empty()) load_scene(options.scene, options.loading);
-    Device device(common.device);
+    DeviceOptions device_options = common.device;
+    device_options.traversal = options.traversal;
+    Device device(device_options);
     take_driver_failures();
     const SelfTestReport report = run_self_test(device);
     if (const KernelTest* failed = report.failed()) {
@@ -50,14 +54,19 @@ Command add_warm_command(CLI::App& app, CommonOptions& common) {
     add_scene_argument(*command, "SCENE", options->scene);
     command->get_option("SCENE")->required(false);
     add_scene_options(*command, options->loading);
+    add_traversal_option(*command, options->traversal);
     add_device_options(*command, common);
     add_common_options(*command, common);
     command->footer(
         "They are compiled into the program cache (SAHL_CACHE_DIR, else XDG_CACHE_HOME/sahl, else\n"
         "~/.cache/sahl), for the device and the host's processor, and tested. All scenes have the same\n"
-        "kernels; with SCENE that it can be loaded is checked too.\n"
+        "kernels; with SCENE that it can be loaded is checked too. Each way of traversal has its own: those "
+        "of\n"
+        "--traversal, or of the device's default. Kernels that count, for costs of pixels and profiles, are\n"
+        "compiled when they are first needed.\n"
         "Examples:\n"
         "  sahl warm\n"
+        "  sahl warm --traversal stream\n"
         "  sahl warm scene.json && sahl profile scene.json --assert-no-jit");
     return {command, [options, &common] { return warm(*options, common); }};
 }

@@ -65,6 +65,19 @@ TEST_CASE("explain: the colour is the rendered pixel's, and each ray says what i
     }
 }
 
+TEST_CASE("explain: neither tree nor traversal changes the rays, and memory is limited", "[cli][explain]") {
+    const std::vector<std::string> plain{
+        "explain", scene_file("all_entities.nff"), "--pixel", "31,30", "--size", "64x48", "--json"};
+    std::vector<std::string> other = plain;
+    other.insert(other.end(), {"--build-quality", "fast", "--traversal", "stream", "--max-mem", "200M"});
+    CHECK(explained(other) == explained(plain));
+    std::vector<std::string> tight = plain;
+    tight.insert(tight.end(), {"--max-mem", "10K"});
+    const ProcessResult refused = run_sahl(tight);
+    CHECK(refused.status == 5);
+    CHECK(contains(refused.err, "--max-mem"));
+}
+
 TEST_CASE("explain: the text has the tree and the sums", "[cli][explain]") {
     const ProcessResult result =
         run_sahl({"explain", scene_file("all_entities.nff"), "--pixel", "31,30", "--size", "64x48"});
