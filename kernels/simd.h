@@ -22,7 +22,11 @@
 #endif
 
 /// The lowest set bit's number; `mask` is not 0.
+#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
 static inline uint lowest_lane(uint mask) { return (uint)__builtin_ctz(mask); }
+#else
+static inline uint lowest_lane(uint mask) { return 31u - clz(mask & (0u - mask)); }
+#endif
 
 /// The highest set bit's number; `mask` is not 0.
 static inline uint highest_lane(uint mask) { return 31u - clz(mask); }

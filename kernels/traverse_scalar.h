@@ -133,6 +133,7 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
                 return;
             }
             cull_t = state->t * SAHL_CULL_SLACK;
+            SAHL_COUNT(bvh, SAHL_COUNT_FLOP, 1u);
         } else {
             const global BvhNode* node = bvh->nodes + current;
             float8 enter, leave;

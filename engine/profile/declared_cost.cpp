@@ -12,8 +12,8 @@ constexpr std::uint64_t hit_bytes = (SAHL_HIT_FLOATS + SAHL_HIT_UINTS) * word;
 constexpr std::uint64_t color_bytes = 3 * word;
 constexpr std::uint64_t triangle_bytes = 9 * word;  ///< the least that shading reads of a shape
 
-/// Box test, shear and range of a ray before its first node.
-constexpr std::uint64_t ray_flop = 3 + 9 + 9 + 2;
+/// Box test, shear, check and range of a ray before its first node, ray by ray.
+constexpr std::uint64_t ray_flop = 24 + 2 + 10 + 1;
 
 std::uint64_t visited_bytes(const KernelVisits& visits) {
     return visits.nodes * sizeof(device::BvhNode) + visits.leaf_bytes;
