@@ -51,8 +51,7 @@ const std::vector<Fault> one_a_kernel{
     {"count_children", "compact.cl", "block_count + block] = transmitted",
      "block_count + block] = transmitted + 1u"},
     {"sum_children", "compact.cl", "totals[0] = children", "totals[0] = children - 1u"},
-    {"compact", "compact.cl", "next[to + k] = from[place[k]]",
-     "next[to + k] = from[place[0]]"},
+    {"compact", "compact.cl", "next[to + k] = from[place[k]]", "next[to + k] = from[place[0]]"},
     {"describe", "aov.cl", "turned ? facing : surfaces.ns", "surfaces.ns"},
 };
 
