@@ -14,7 +14,7 @@ void print(std::string_view text);
 /// One event of the `--json` stream: `event` on a line of its own.
 void print_event(const nlohmann::ordered_json& event);
 
-/// Writes `text` to standard error, as far as somebody reads it: a terminal that was closed ends no work.
+/// Writes `text` to standard error, as far as somebody reads it: a log on a full disk ends no work.
 void print_message(std::string_view text);
 
 /// Lets files that the process opens never take the place of a standard stream that it was started without,
