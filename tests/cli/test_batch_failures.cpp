@@ -3,6 +3,7 @@
 #include <csignal>
 #include <ctime>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <random>
 #include <set>
@@ -36,6 +37,13 @@ void wait_until_dead(pid_t process) {
     // It is the child of nobody here: /proc is what there is to ask.
     while (fs::exists("/proc/" + std::to_string(process)))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+/// Waits for it, a minute at most.
+bool comes_true(const std::function<bool()>& condition) {
+    const Clock::time_point end = Clock::now() + std::chrono::minutes(1);
+    while (!condition() && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return condition();
 }
 
 using Pixels = std::map<std::string, std::vector<float>>;
@@ -299,8 +307,7 @@ TEST_CASE("batch failures: SIGTERM to all its processes is SIGTERM to one", "[cl
     std::vector<std::string> command = night.command({"--checkpoint", "0.05"});
     command.insert(command.begin(), "/usr/bin/setsid");  // a group of its own
     Process process(command, night.options);
-    while (!fs::exists(night.folder / "out/.0001.exr.checkpoint"))
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    REQUIRE(comes_true([&] { return fs::exists(night.folder / "out/.0001.exr.checkpoint"); }));
     const std::vector<pid_t> workers = children_of(process.id());
     REQUIRE(workers.size() == 1);
     CHECK(content_of("/proc/" + std::to_string(workers[0]) + "/cmdline").starts_with("sahl-worker"));
@@ -362,8 +369,10 @@ TEST_CASE("batch failures: a long image goes on from its checkpoint to the same 
             Process process(night.command({"--checkpoint", "0.05"}), night.options);
             for (int saved = std::uniform_int_distribution(1, count(2, 4))(random); saved > 0; --saved) {
                 const FileIdentity before = identity_of(checkpoint);
-                while (identity_of(checkpoint) == before && !fs::exists(night.folder / "out/0001.exr"))
-                    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                const bool saved_again = comes_true([&] {
+                    return identity_of(checkpoint) != before || fs::exists(night.folder / "out/0001.exr");
+                });
+                REQUIRE(saved_again);
             }
             process.send_signal(signal);
             const ProcessResult result = process.finish();
