@@ -186,7 +186,7 @@ TEST_CASE("batch failures: a broken scene among others fails alone", "[cli][batc
 
 TEST_CASE("batch failures: on a full disk it ends with 6 or 8, and what was written stays", "[cli][batch]") {
     int failed = 0;
-    const int steps = count(5, 40);
+    const int steps = count(3, 40);
     for (int i = 0; i < steps; ++i) {
         const SmallDisk disk(1 << 20);
         if (!disk.mounted()) {
