@@ -17,7 +17,7 @@ SAHL = BUILD / "sahl"
 class Run:
     """A finished process: its output, its wall-clock and its processor time (both in seconds), the most memory it had."""
 
-    def __init__(self, command, environment=None):
+    def __init__(self, command, environment=None, statuses=(0,)):
         outputs = []
         self.started_ns = time.clock_gettime_ns(time.CLOCK_MONOTONIC_RAW)
         process = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -33,7 +33,7 @@ class Run:
         self.processor_seconds = usage.ru_utime + usage.ru_stime
         self.peak_bytes = usage.ru_maxrss * 1024
         self.output = "".join(outputs)
-        if process.returncode != 0:
+        if process.returncode not in statuses:
             fail(f"{' '.join(str(part) for part in command)}: status {process.returncode}\n{self.output}")
 
 

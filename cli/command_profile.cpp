@@ -63,6 +63,8 @@ Measured take_measurement(const ProfileOptions& options, const CommonOptions& co
     ProfileEnvironment environment = std::move(prepared.measurement.environment);
     environment.clock_uncertainty_ns = measured.environment.clock_uncertainty_ns;
     environment.overhead_percent = measured.environment.overhead_percent;
+    environment.overhead_low_percent = measured.environment.overhead_low_percent;
+    environment.overhead_high_percent = measured.environment.overhead_high_percent;
     environment.warm_up = measured.environment.warm_up;
     measured.environment = std::move(environment);
     measured.setup = std::move(prepared.measurement.setup);

@@ -117,12 +117,13 @@ std::string sums(const Profile& profile) {
     });
     const TimeBreakdown& time = middle->time;
     std::string text = fmt::format(
-        "frames      {} after {} of warm-up; median {:.3f} ms; recording adds {:.1f} %; clocks aligned to "
-        "{:.0f} us\n"
+        "frames      {} after {} of warm-up; median {:.3f} ms; recording adds {:.1f} % ({:.1f} to {:.1f}); "
+        "clocks to {:.0f} us\n"
         "a frame     wall {:.3f} ms = device busy {:.3f} + idle {:.3f} (the repetition nearest the median)\n"
         "  idle      {}\n"
         "  rest      unattributed {:.3f} ms, {:.2f} % of wall\n",
         all.size(), profile.environment.warm_up, profile.wall_ms, profile.environment.overhead_percent,
+        profile.environment.overhead_low_percent, profile.environment.overhead_high_percent,
         profile.environment.clock_uncertainty_ns * 1e-3, time.wall_ms, time.device_busy_ms,
         time.device_idle_ms, exposed_text(time), time.unattributed_ms,
         time.wall_ms > 0 ? 100 * time.unattributed_ms / time.wall_ms : 0);

@@ -1,5 +1,6 @@
 #include "engine/profile/frame_recorder.h"
 
+#include <ctime>
 #include <utility>
 
 namespace sahl {
@@ -51,13 +52,22 @@ RenderStatistics run_frame(Device& device, Renderer& renderer, const FrameJob& j
     return statistics;
 }
 
+std::uint64_t processor_ns() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U +
+           static_cast<std::uint64_t>(time.tv_nsec);
+}
+
 RecordedFrame record_frame(Device& device, Renderer& renderer, const FrameJob& job) {
     RecordedFrame frame;
     frame.clock = measure_clock(device);
+    const std::uint64_t begin = processor_ns();
     TimelineRecorder recorder;
     recorder.add(device);
     frame.statistics = run_frame(device, renderer, job);
     frame.timeline = recorder.stop(device, frame.clock);
+    frame.processor_ns = processor_ns() - begin;
     return frame;
 }
 

@@ -41,7 +41,11 @@ struct RecordedFrame {
     TimelineRecord timeline;
     RenderStatistics statistics;
     ClockOffset clock;
+    std::uint64_t processor_ns = 0;  ///< that this process took for it
 };
+
+/// Processor time of this process so far, of all its threads.
+std::uint64_t processor_ns();
 
 /// The same, recorded. The device's clock is measured before.
 RecordedFrame record_frame(Device& device, Renderer& renderer, const FrameJob& job);

@@ -1,6 +1,7 @@
 #include "engine/profile/measure.h"
 
 #include <algorithm>
+#include <random>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -15,7 +16,7 @@ constexpr int least_repeat = 7;
 constexpr int most_repeat = 100;
 constexpr double most_seconds = 10;
 constexpr double enough = 0.01;
-constexpr int overhead_pairs = 7;  ///< of a recorded frame and one that is not
+constexpr std::size_t overhead_pairs = 15;  ///< of a frame that is not recorded and one that is
 
 double seconds(std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
@@ -42,6 +43,44 @@ void check_same_rays(const std::vector<GenerationCounts>& a, const std::vector<G
     }
 }
 
+/// What recording adds to frames: of a CPU's in processor time, which other programs hardly change.
+class Overhead {
+public:
+    Overhead(Device& device, Renderer& renderer, const FrameJob& job)
+        : device_(device), renderer_(renderer), job_(job), by_processor_(device.info().is_cpu) {}
+
+    bool is_enough() const { return times_.other.size() >= overhead_pairs; }
+
+    void run_unrecorded() {
+        device_.finish();
+        const std::uint64_t begin = now();
+        run_frame(device_, renderer_, job_);
+        device_.finish();
+        times_.base.push_back(seconds(now() - begin));
+    }
+
+    void add(const RecordedFrame& frame) {
+        times_.other.push_back(by_processor_ ? seconds(frame.processor_ns) : wall_seconds(frame.timeline));
+    }
+
+    void describe(ProfileEnvironment& environment) const {
+        const auto percent = [](double ratio) { return 100 * (ratio - 1); };
+        const Interval interval = bootstrap_interval(times_);
+        environment.overhead_percent = percent(ratio_of(times_));
+        environment.overhead_low_percent = percent(interval.low);
+        environment.overhead_high_percent = percent(interval.high);
+    }
+
+private:
+    std::uint64_t now() const { return by_processor_ ? processor_ns() : monotonic_ns(); }
+
+    Device& device_;
+    Renderer& renderer_;
+    const FrameJob& job_;
+    bool by_processor_;
+    TwoSides times_{{}, {}, true};
+};
+
 }  // namespace
 
 Measurement measure(Device& device, Renderer& renderer, const FrameJob& job, const MeasureOptions& options,
@@ -53,26 +92,27 @@ Measurement measure(Device& device, Renderer& renderer, const FrameJob& job, con
         run_frame(device, renderer, job);
     }
     std::vector<double> walls;
-    std::vector<double> overheads;  // recorded over unrecorded
+    Overhead overhead(device, renderer, job);
+    std::mt19937 coin;  // NOLINT: always the same draws
     while (!is_enough(walls, options)) {
+        const bool in_pair = !overhead.is_enough();
+        const bool recorded_first = coin() >> 31U != 0;
         between_frames();
+        if (in_pair && !recorded_first) overhead.run_unrecorded();
         RecordedFrame frame = record_frame(device, renderer, job);
         walls.push_back(wall_seconds(frame.timeline));
         measurement.environment.clock_uncertainty_ns = std::max(
             measurement.environment.clock_uncertainty_ns, static_cast<double>(frame.clock.uncertainty_ns));
         if (walls.size() == 1) measurement.generations = frame.statistics.generations;
         check_same_rays(measurement.generations, frame.statistics.generations);
+        if (in_pair) {
+            overhead.add(frame);
+            if (recorded_first) overhead.run_unrecorded();
+        }
         measurement.frames.push_back(std::move(frame.timeline));
-        if (overheads.size() == overhead_pairs) continue;
-        between_frames();
-        device.finish();
-        const std::uint64_t begin = monotonic_ns();
-        run_frame(device, renderer, job);
-        device.finish();
-        overheads.push_back(walls.back() / seconds(monotonic_ns() - begin));
     }
     measurement.compiles_during_render = count_compilations() - compiled_before;
-    measurement.environment.overhead_percent = 100 * (median(overheads) - 1);
+    overhead.describe(measurement.environment);
     measurement.environment.warm_up = options.warm_up;
     between_frames();
     measurement.visits = renderer.count_visits(job.settings);

@@ -98,7 +98,8 @@ struct ProfileEnvironment {
     std::string cpu;
     int threads = 0;
     double clock_uncertainty_ns = 0;
-    double overhead_percent = 0;
+    double overhead_percent = 0;                                 ///< what recording adds to a frame
+    double overhead_low_percent = 0, overhead_high_percent = 0;  ///< its 95 % interval
     int warm_up = 0;
 };
 

@@ -36,6 +36,8 @@ Json environment_json(const ProfileEnvironment& e) {
             {"threads", e.threads},
             {"clock_uncertainty_ns", e.clock_uncertainty_ns},
             {"overhead_percent", e.overhead_percent},
+            {"overhead_low_percent", e.overhead_low_percent},
+            {"overhead_high_percent", e.overhead_high_percent},
             {"warm_up", e.warm_up}};
 }
 

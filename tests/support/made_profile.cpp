@@ -95,6 +95,8 @@ Json environment() {
             {"threads", 2},
             {"clock_uncertainty_ns", 90.0},
             {"overhead_percent", 0.3},
+            {"overhead_low_percent", -0.1},
+            {"overhead_high_percent", 0.8},
             {"warm_up", 2}};
 }
 

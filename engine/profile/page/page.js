@@ -67,6 +67,7 @@ function drawSummary(target, profile) {
     const traced = profile.kernel_totals.filter(row => row.kernel === "intersect" || row.kernel === "shadow");
     const rays = traced.reduce((sum, row) => sum + row.rays_in, 0);
     const busy = median(profile.repetitions.map(repetition => 100 * repetition.device_busy_ms / repetition.wall_ms));
+    const {environment} = profile;
     const outliers = profile.repetitions.filter(repetition => repetition.outlier).length;
     const tiles = [
         ["wall_ms", profile.wall_ms, " ms", "a frame, median"],
@@ -74,7 +75,8 @@ function drawSummary(target, profile) {
         ["device_busy_percent", busy, " %", "device busy"],
         ["unattributed_ms", profile.unattributed_ms, " ms", "unattributed"],
         ["compiles_during_render", profile.compiles_during_render, "", "compiles during render"],
-        ["overhead_percent", profile.environment.overhead_percent, " %", "overhead of profiling"],
+        ["overhead_percent", environment.overhead_percent, " %", "overhead of profiling (" +
+            `${number(environment.overhead_low_percent, 2)} to ${number(environment.overhead_high_percent, 2)})`],
         ["repetitions", profile.repetitions.length, "", `repetitions, ${outliers} outliers`],
     ];
     for (const [key, value, unit, label] of tiles) {
