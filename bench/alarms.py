@@ -57,7 +57,7 @@ def differing(rows):
 def main():
     parser = argparse.ArgumentParser(prog="bench/run alarms", description="False alarms and findings of sahl profile --ab.")
     parser.add_argument("--runs", type=int, default=100, help="of each kind (default: 100)")
-    parser.add_argument("--pairs", type=int, default=300, help="of frames in a run (default: 300)")
+    parser.add_argument("--pairs", type=int, default=100, help="of frames in a run (default: 100)")
     parser.add_argument("--scene", default=str(ROOT / "scenes" / "whitted.json"))
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--depth", default="0", help="generations after the camera rays (default: 0)")
