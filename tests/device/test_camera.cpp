@@ -26,6 +26,11 @@ kernel void pixels(const uint width, const uint height, global uint2* out, const
 }
 )";
 
+/// The rays that there has to be room for, generate's last parameter: groups of lanes are written whole.
+std::size_t capacity_for(const device::WaveConstants& wave) {
+    return (wave.count + SAHL_LANES - 1) / SAHL_LANES * SAHL_LANES;
+}
+
 }  // namespace
 
 TEST_CASE("the order of pixels visits each pixel of a crop once, in strips of eight rows") {
@@ -57,8 +62,7 @@ TEST_CASE("camera rays go where the oracle's go") {
     const Resolution resolution{37, 21};
     const device::WaveConstants wave{0, 0, 37 * 21, 1, 0, 0, 37, 21, 5, 0, 0, 1};
     for (const Camera& camera : cameras) {
-        // What generate takes as its last parameter: groups of lanes are written whole.
-        const std::size_t capacity = (wave.count + SAHL_LANES - 1) / SAHL_LANES * SAHL_LANES;
+        const std::size_t capacity = capacity_for(wave);
         Buffer rays(runner.device(), SAHL_RAY_FLOATS * capacity * 4, "rays");
         Buffer ids(runner.device(), SAHL_RAY_UINTS * capacity * 4, "ids");
         runner.run("generate", capacity, camera_constants(camera, resolution), wave, rays, ids);
@@ -92,17 +96,17 @@ TEST_CASE("a crop and a later part of the samples get the rays of the whole imag
     constexpr std::uint32_t kSpp = 3;
     // Directions by film pixel and sample.
     const auto generate = [&](const device::WaveConstants& wave) {
-        const std::size_t count = wave.count;
-        Buffer rays(runner.device(), SAHL_RAY_FLOATS * count * 4, "rays");
-        Buffer ids(runner.device(), SAHL_RAY_UINTS * count * 4, "ids");
-        runner.run("generate", count, camera_constants(camera, resolution), wave, rays, ids);
-        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * count);
-        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * count);
+        const std::size_t capacity = capacity_for(wave);
+        Buffer rays(runner.device(), SAHL_RAY_FLOATS * capacity * 4, "rays");
+        Buffer ids(runner.device(), SAHL_RAY_UINTS * capacity * 4, "ids");
+        runner.run("generate", capacity, camera_constants(camera, resolution), wave, rays, ids);
+        const auto floats = KernelRunner::download<float>(rays, SAHL_RAY_FLOATS * capacity);
+        const auto words = KernelRunner::download<std::uint32_t>(ids, SAHL_RAY_UINTS * capacity);
         std::vector<std::array<float, 3>> result(std::size_t{wave.crop_width} * wave.crop_height * kSpp);
-        for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t i = 0; i < wave.count; ++i) {
             for (std::size_t k = 0; k < 3; ++k)
                 result[words[i] * kSpp + (wave.first_low + i) % kSpp][k] =
-                    floats[(SAHL_RAY_DIRECTION + k) * count + i];
+                    floats[(SAHL_RAY_DIRECTION + k) * capacity + i];
         }
         return result;
     };
@@ -124,9 +128,9 @@ TEST_CASE("samples are numbered beyond 32 bits") {
     KernelRunner runner(kKernels);
     // Sample 2^32 of 2^14 a pixel is the first of pixel 2^18: the top left one of strip 32 of 1024 columns.
     const device::WaveConstants wave{0, 1, 10, 16384, 0, 0, 1024, 1024, 0, 0, 0, 16384};
-    Buffer rays(runner.device(), SAHL_RAY_FLOATS * std::size_t{wave.count} * 4, "rays");
-    Buffer ids(runner.device(), SAHL_RAY_UINTS * std::size_t{wave.count} * 4, "ids");
-    runner.run("generate", wave.count, camera_constants({}, {1024, 1024}), wave, rays, ids);
+    Buffer rays(runner.device(), SAHL_RAY_FLOATS * capacity_for(wave) * 4, "rays");
+    Buffer ids(runner.device(), SAHL_RAY_UINTS * capacity_for(wave) * 4, "ids");
+    runner.run("generate", capacity_for(wave), camera_constants({}, {1024, 1024}), wave, rays, ids);
     for (const std::uint32_t pixel : KernelRunner::download<std::uint32_t>(ids, wave.count))
         CHECK(pixel == 256 * 1024);
 }
