@@ -30,10 +30,4 @@ static inline real3 group_from_world_point(const global DeviceInstance* instance
                                                           instance_element(instance, 2, 3));
 }
 
-/// A normal of the group in the world, of any length: times the transpose of object_from_world.
-static inline real3 world_from_group_normal(const global DeviceInstance* instance, real3 n) {
-    return instance_row(instance, 0) * n.x + instance_row(instance, 1) * n.y +
-           instance_row(instance, 2) * n.z;
-}
-
 #endif

@@ -107,7 +107,7 @@ static inline floatv3 gather3(const LanePlaces* at, uint k) {
     return (floatv3){gather(at, k), gather(at, k + 1u), gather(at, k + 2u)};
 }
 
-/// A number in two floats, as load_real() reads it.
+/// A number in two floats, the second being what the first lacks.
 static inline realv gather_real(const LanePlaces* at, uint k) {
     return convert_realv(gather(at, k)) + convert_realv(gather(at, k + 1u));
 }

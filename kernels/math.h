@@ -22,14 +22,6 @@ static inline float max_abs3(float3 v) {
     return SAHL_MAX(SAHL_MAX(a.x, a.y), a.z);
 }
 
-static inline float3 min3(float3 a, float3 b) {
-    return (float3)(SAHL_MIN(a.x, b.x), SAHL_MIN(a.y, b.y), SAHL_MIN(a.z, b.z));
-}
-
-static inline float3 max3(float3 a, float3 b) {
-    return (float3)(SAHL_MAX(a.x, b.x), SAHL_MAX(a.y, b.y), SAHL_MAX(a.z, b.z));
-}
-
 static inline bool is_nonzero(float3 v) { return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f; }
 
 static inline float3 load3(const global float* p) { return (float3)(p[0], p[1], p[2]); }

@@ -22,19 +22,11 @@ typedef float3 real3;
 
 static inline real dot3_real(real3 a, real3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-static inline real3 cross3_real(real3 a, real3 b) {
-    return (real3)(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-}
-
-static inline real3 normalize3_real(real3 v) { return v / sqrt(dot3_real(v, v)); }
-
 static inline float3 round3(real3 v) { return convert_float3(v); }
 
 /// Three floats and, behind them, the three that they lack.
 static inline real3 load3_real(const global float* p) {
     return convert_real3(load3(p)) + convert_real3(load3(p + 3));
 }
-
-static inline real load_real(const global float* p) { return (real)p[0] + (real)p[1]; }
 
 #endif
