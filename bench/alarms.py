@@ -38,16 +38,16 @@ def slow_kernels(folder):
 
 
 def compare(options, base, other):
-    """One comparison: its rows by name, and what `--fail-if` says of the kernel."""
+    """One comparison: its rows by name, what `--fail-if` says of the kernel, and the pairs of frames."""
     run = Run([SAHL, "profile", options.scene, "--size", options.size, "--depth", options.depth,
-               "--repeat", options.pairs, "--json", "-q", "--ab",
+               *(["--repeat", options.pairs] if options.pairs else []), "--json", "-q", "--ab",
                f"SAHL_KERNEL_DIR={base}", f"SAHL_KERNEL_DIR={other}", "--fail-if", "intersect:+0%"], statuses=(0, 9))
     event = next(event for event in map(json.loads, run.output.splitlines()) if event["event"] == "profile_diff")
     rows = {}
     for row in event["rows"]:
         generation = "" if row["generation"] is None else f"/{row['generation']}"
         rows[row["kernel"] + generation] = row
-    return rows, event["limits"][0]
+    return rows, event["limits"][0], event["pairs"]
 
 
 def differing(rows):
@@ -57,7 +57,7 @@ def differing(rows):
 def main():
     parser = argparse.ArgumentParser(prog="bench/run alarms", description="False alarms and findings of sahl profile --ab.")
     parser.add_argument("--runs", type=int, default=100, help="of each kind (default: 100)")
-    parser.add_argument("--pairs", type=int, default=100, help="of frames in a run (default: 100)")
+    parser.add_argument("--pairs", type=int, help="of frames in a run (default: that of --ab)")
     parser.add_argument("--scene", default=str(ROOT / "scenes" / "whitted.json"))
     parser.add_argument("--size", default="256x256")
     parser.add_argument("--depth", default="0", help="generations after the camera rays (default: 0)")
@@ -65,7 +65,7 @@ def main():
     options = parser.parse_args()
 
     report = {"machine": machine_facts(), "scene": pathlib.Path(options.scene).name, "size": options.size,
-              "depth": options.depth, "pairs": options.pairs, "runs": []}
+              "depth": options.depth, "runs": []}
     alarms = findings = 0
     with tempfile.TemporaryDirectory() as folder:
         slow = pathlib.Path(folder) / "kernels"
@@ -73,7 +73,7 @@ def main():
         same = ROOT / "kernels"
         for number in range(options.runs):
             wrong = differing(compare(options, same, same)[0])
-            found = compare(options, same, slow)[1]
+            _, found, report["pairs"] = compare(options, same, slow)
             alarms += bool(wrong)
             findings += found["exceeded"]
             report["runs"].append({"alarms": wrong, "intersect": found})
@@ -84,7 +84,7 @@ def main():
     report.update(false_alarms=alarms, findings=findings, slowdown=slowdown)
     facts = report["machine"]
     print(f"{facts['processor']}, {facts['cores']} cores, load {facts['load_average']:.1f}")
-    print(f"{report['scene']}, {options.size}, {options.pairs} pairs a run: {alarms} of {options.runs} runs of equal kernels "
+    print(f"{report['scene']}, {options.size}, {report['pairs']} pairs a run: {alarms} of {options.runs} runs of equal kernels "
           f"with a false alarm, a slowdown of {100 * (slowdown - 1):.1f} % (median) found in {findings} of {options.runs}")
     if options.json:
         write_report(report, options.json)

@@ -30,7 +30,7 @@ ExitCode diff_files(const DiffOptions& options, const CommonOptions& common) {
     log_warning(
         "the two profiles were not measured in turn: what has changed in the machine meanwhile (clock rates, "
         "other programs) counts as a difference too; 'sahl profile --ab' excludes that");
-    return report(diff_profiles(options.base, base, options.other, other, false, options.limits), common);
+    return report(diff_profiles(options.base, base, options.other, other, 0, options.limits), common);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace sahl::cli {
 
 namespace {
 
-constexpr int default_pairs = 30;
 constexpr std::string_view kernel_folder = "SAHL_KERNEL_DIR";
 
 /// The environment variable SAHL_KERNEL_DIR as `setting` says, until the end of its life.
@@ -66,17 +65,23 @@ ProfileOptions with_setting(const ProfileOptions& options, const std::string& se
     return changed;
 }
 
-Prepared prepare_side(const ProfileOptions& options, const std::string& setting,
-                      const CommonOptions& common) {
-    if (setting.starts_with(std::string(kernel_folder) + "=")) {
-        const KernelFolder folder(setting.substr(kernel_folder.size() + 1));
-        return prepare(options, common);
-    }
-    return prepare(with_setting(options, setting), common);
+/// What one of the two settings says.
+struct Side {
+    ProfileOptions options;
+    std::optional<std::string> kernels{};  ///< their folder, if it is not that of the environment
+};
+
+Side read_side(const ProfileOptions& options, const std::string& setting) {
+    if (setting.starts_with(std::string(kernel_folder) + "="))
+        return {options, setting.substr(kernel_folder.size() + 1)};
+    return {with_setting(options, setting)};
 }
 
-Contender contender(Prepared& side) {
-    return {*side.device, *side.renderer, side.job, side.measurement.environment};
+Contender make_side(const Side& side, const CommonOptions& common) {
+    std::optional<KernelFolder> folder;
+    if (side.kernels) folder.emplace(*side.kernels);
+    Prepared made = prepare(side.options, common);
+    return {std::move(made.device), std::move(made.renderer), made.job, made.measurement.environment};
 }
 
 }  // namespace
@@ -105,11 +110,15 @@ ExitCode run_ab(const ProfileOptions& options, const CommonOptions& common) {
                         fmt::format("--export-{}: a report is of one profile, without --ab", name));
     }
     const std::vector<std::string>& settings = options.ab.settings;
-    Prepared base = prepare_side(options, settings[0], common);
-    Prepared other = prepare_side(options, settings[1], common);
-    const auto times = measure_in_turn({contender(base), contender(other)}, options.warm_up,
-                                       options.repeat.value_or(default_pairs), check_interruption);
-    return report(diff_profiles(settings[0], times[0], settings[1], times[1], true, options.ab.limits),
+    const Side base = read_side(options, settings[0]);
+    const Side other = read_side(options, settings[1]);
+    const auto maker = [&common](const Side& side) {
+        return [&side, &common] { return make_side(side, common); };
+    };
+    const TurnTimes times =
+        measure_in_turn({maker(base), maker(other)}, {options.warm_up, options.repeat}, check_interruption);
+    return report(diff_profiles(settings[0], times.sides[0], settings[1], times.sides[1], times.pairs,
+                                options.ab.limits),
                   common);
 }
 

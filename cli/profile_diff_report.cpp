@@ -38,9 +38,15 @@ std::string interval_text(const Interval& interval) {
 std::string p_text(double p) { return p < 0.0001 ? "< 0.0001" : fmt::format("{:.4f}", p); }
 
 std::string side_line(const char* side, const std::string& name, const ProfileEnvironment& environment,
-                      std::size_t repetitions) {
-    return fmt::format("{:<6} {}  (sahl {}, kernels {:.8}, tree {}, {} repetitions)\n", side, name,
-                       environment.sahl, environment.kernel_hash, environment.build_quality, repetitions);
+                      const std::string& frames) {
+    return fmt::format("{:<6} {}  (sahl {}, kernels {:.8}, tree {}, {})\n", side, name, environment.sahl,
+                       environment.kernel_hash, environment.build_quality, frames);
+}
+
+/// "20 repetitions", or of what ran in turn "300 frames in 20 blocks".
+std::string frames_text(int pairs, std::size_t repetitions) {
+    return pairs > 0 ? fmt::format("{} frames in {} blocks", pairs, repetitions)
+                     : fmt::format("{} repetitions", repetitions);
 }
 
 std::string row_line(const RowComparison& row) {
@@ -57,10 +63,12 @@ std::string limit_line(const LimitResult& result) {
 }
 
 std::string table(const ProfileDiff& diff) {
-    std::string text = side_line("base", diff.base_name, diff.base, diff.base_repetitions) +
-                       side_line("other", diff.other_name, diff.other, diff.other_repetitions) + "\n" +
-                       fmt::format("{:<20} {:>10} {:>10} {:>9}  {:>19} {:>9}  {}\n", "kernel/generation",
-                                   "base ms", "other ms", "change", "95 % interval", "p", "verdict");
+    std::string text =
+        side_line("base", diff.base_name, diff.base, frames_text(diff.pairs, diff.base_repetitions)) +
+        side_line("other", diff.other_name, diff.other, frames_text(diff.pairs, diff.other_repetitions)) +
+        "\n" +
+        fmt::format("{:<20} {:>10} {:>10} {:>9}  {:>19} {:>9}  {}\n", "kernel/generation", "base ms",
+                    "other ms", "change", "95 % interval", "p", "verdict");
     for (const RowComparison& row : diff.comparison.rows) {
         if (row.p_value) text += row_line(row);
     }
@@ -120,7 +128,8 @@ Json event(const ProfileDiff& diff) {
     return {{"event", "profile_diff"},
             {"base", side_json(diff.base_name, diff.base, diff.base_repetitions)},
             {"other", side_json(diff.other_name, diff.other, diff.other_repetitions)},
-            {"interleaved", diff.paired},
+            {"interleaved", diff.pairs > 0},
+            {"pairs", diff.pairs},
             {"level", comparison_level},
             {"rows", rows},
             {"unmatched", diff.comparison.unmatched},
@@ -142,7 +151,7 @@ SlowdownLimit read_limit(const std::string& text) {
 }  // namespace
 
 ProfileDiff diff_profiles(const std::string& base_name, const ProfileTimes& base,
-                          const std::string& other_name, const ProfileTimes& other, bool paired,
+                          const std::string& other_name, const ProfileTimes& other, int pairs,
                           const std::vector<SlowdownLimit>& limits) {
     return {base_name,
             other_name,
@@ -150,9 +159,9 @@ ProfileDiff diff_profiles(const std::string& base_name, const ProfileTimes& base
             other.environment,
             base.rows.front().samples_ms.size(),
             other.rows.front().samples_ms.size(),
-            paired,
-            compare_profiles(base, other, paired),
-            check_limits(base, other, paired, limits)};
+            pairs,
+            compare_profiles(base, other, pairs > 0),
+            check_limits(base, other, pairs > 0, limits)};
 }
 
 void add_fail_if_option(CLI::App& command, std::vector<SlowdownLimit>& limits) {
@@ -169,10 +178,11 @@ ExitCode report(const ProfileDiff& diff, const CommonOptions& common) {
         print(table(diff));
     }
     if (diff.comparison.too_few_repetitions) {
-        log_warning(
-            fmt::format("{} and {} repetitions are too few to tell {} rows apart: 'no difference' says "
-                        "nothing here; profile with a larger --repeat",
-                        diff.base_repetitions, diff.other_repetitions, diff.comparison.tested));
+        log_warning(fmt::format(
+            "{} and {} {} are too few to tell {} rows apart: 'no difference' says nothing here; profile "
+            "with a larger --repeat",
+            diff.base_repetitions, diff.other_repetitions, diff.pairs > 0 ? "blocks" : "repetitions",
+            diff.comparison.tested));
     }
     return passed(diff) ? ExitCode::ok : ExitCode::performance;
 }

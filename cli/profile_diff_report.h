@@ -16,15 +16,15 @@ struct ProfileDiff {
     std::string other_name;
     ProfileEnvironment base;
     ProfileEnvironment other;
-    std::size_t base_repetitions = 0;
+    std::size_t base_repetitions = 0;  ///< blocks, where both ran in turn
     std::size_t other_repetitions = 0;
-    bool paired = false;
+    int pairs = 0;  ///< of frames that ran in turn; 0: the sides are of two runs
     ProfileComparison comparison;
     std::vector<LimitResult> limits;
 };
 
 ProfileDiff diff_profiles(const std::string& base_name, const ProfileTimes& base,
-                          const std::string& other_name, const ProfileTimes& other, bool paired,
+                          const std::string& other_name, const ProfileTimes& other, int pairs,
                           const std::vector<SlowdownLimit>& limits);
 
 /// `--fail-if ROW:+P%`, several times.

@@ -34,7 +34,9 @@ void add_profile_options(CLI::App& command, ProfileOptions& options) {
         [&options](const std::string& text) {
             options.repeat = read_whole<int>("--repeat", text, 1, most_frames);
         },
-        "frames to measure (default: until their median is sure to 1 %, 7 to 100 frames or 10 s)")
+        "frames to measure (default: until their median is sure to 1 %, 7 to 100 frames or 10 s), or pairs "
+        "of "
+        "them with --ab (default: 300, fewer of frames that take long)")
         ->group("Measuring");
     add_value(
         command, "--warm-up", "N",

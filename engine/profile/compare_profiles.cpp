@@ -12,13 +12,6 @@
 namespace sahl {
 namespace {
 
-const TimedRow* find_row(const ProfileTimes& times, const std::string& name) {
-    for (const TimedRow& row : times.rows) {
-        if (name_of(row) == name) return &row;
-    }
-    return nullptr;
-}
-
 RowComparison compare_rows(const TimedRow& row, const TwoSides& times) {
     return {{row.kernel, row.generation, {}}, median(times.base), median(times.other), ratio_of(times),
             bootstrap_interval(times),        std::nullopt};

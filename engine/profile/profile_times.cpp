@@ -158,6 +158,13 @@ std::string name_of(const TimedRow& row) {
     return row.generation ? fmt::format("{}/{}", row.kernel, *row.generation) : row.kernel;
 }
 
+const TimedRow* find_row(const ProfileTimes& times, const std::string& name) {
+    for (const TimedRow& row : times.rows) {
+        if (name_of(row) == name) return &row;
+    }
+    return nullptr;
+}
+
 ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<TimelineRecord>& frames) {
     std::vector<double> wall;
     for (const TimelineRecord& frame : frames) wall.push_back(ms(frame.end_ns - frame.begin_ns));

@@ -27,6 +27,9 @@ struct ProfileTimes {
     std::vector<TimedRow> rows;  ///< wall, then each kernel followed by its generations
 };
 
+/// The row of that name; null if there is none.
+const TimedRow* find_row(const ProfileTimes& times, const std::string& name);
+
 /// Variants of a kernel count as one: which of them suits a generation's rays may be what has changed.
 ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<TimelineRecord>& frames);
 

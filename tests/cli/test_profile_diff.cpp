@@ -72,6 +72,7 @@ TEST_CASE("profile diff: --json has every row and limit", "[cli][profile]") {
     const nlohmann::json& event = events[0];
     CHECK(event.at("event") == "profile_diff");
     CHECK(event.at("interleaved") == false);
+    CHECK(event.at("pairs") == 0);
     CHECK(event.at("base").at("repetitions") == 15);
     CHECK(event.at("rows").size() == 27);
     int not_tested = 0;
