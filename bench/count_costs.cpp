@@ -21,6 +21,9 @@ public:
     explicit CountCosts(const oclgrind::Context* context)
         : Plugin(context), file_(std::getenv("SAHL_COSTS"), std::ios::app) {}
 
+    /// Work-groups are to run one after the other: the sums are everyone's.
+    bool isThreadSafe() const override { return false; }
+
     void kernelBegin(const oclgrind::KernelInvocation*) override { flop_ = loaded_ = stored_ = 0; }
 
     void kernelEnd(const oclgrind::KernelInvocation* launch) override {

@@ -98,10 +98,11 @@ kernel void compact(const global uint* children, const global uint* child_ids, c
     const uint end = SAHL_MIN((block + 1u) * SAHL_COMPACT_BLOCK, count);
     for (uint i = block * SAHL_COMPACT_BLOCK; i < end; ++i) {
         // A place that does not count is overwritten by the next that does.
+        const uint outcome = outcomes[i];
         reflected.place[reflected.count] = i;
-        reflected.count += (outcomes[i] & SAHL_OUTCOME_REFLECTED) != 0u;
+        reflected.count += (outcome & SAHL_OUTCOME_REFLECTED) != 0u;
         transmitted.place[transmitted.count] = i;
-        transmitted.count += (outcomes[i] & SAHL_OUTCOME_TRANSMITTED) != 0u;
+        transmitted.count += (outcome & SAHL_OUTCOME_TRANSMITTED) != 0u;
     }
     move_rays(&reflected, next, next_ids, waiting, waiting_ids, capacity);
     move_rays(&transmitted, next, next_ids, waiting, waiting_ids, capacity);

@@ -15,6 +15,7 @@ struct GenerationWork {
     std::uint64_t shadow_rays = 0;
     std::uint64_t children = 0;
     std::uint32_t lights = 0;  ///< of the scene
+    std::uint32_t spp = 1;     ///< samples a pixel
     GenerationVisits visits;
 };
 

@@ -108,6 +108,7 @@ GenerationWork work_of(const Measurement& measurement, std::uint32_t generation)
         work.children = measurement.generations[generation + 1].rays;
     }
     work.lights = measurement.lights;
+    work.spp = static_cast<std::uint32_t>(measurement.environment.spp);
     work.visits = measurement.visits[generation];
     return work;
 }

@@ -96,6 +96,38 @@ TEST_CASE("profile: shadow rows count shadow rays, and those that reach their li
     CHECK(m.rays_out == 60);
     CHECK(m.node_visits_per_ray == Approx(1));
     CHECK(m.leaf_visits_per_ray == Approx(0.5));
+    // Outcomes, what rays start from and bring, lamps by eight rays, light added, nodes and blocks.
+    CHECK(m.bytes_per_ray == Approx((100 * 4 + 80 * 44 + 10 * 64 + 60 * 36 + 80 * 256 + 400) / 80.0));
+    CHECK(m.flop_per_ray == Approx(1000 / 80.0 + 37));
+}
+
+TEST_CASE("profile: camera rays cost the same everywhere, more with several in a pixel", "[profile]") {
+    Measurement m = measurement();
+    const ProfileMeasures one = row_of(summarize(m).rows, "generate", 0).measures;
+    CHECK(one.bytes_per_ray == Approx(72));
+    CHECK(one.flop_per_ray == Approx(13 * (8 * 30 + 9) / 100.0));  // by groups of eight
+    m.environment.spp = 4;
+    CHECK(row_of(summarize(m).rows, "generate", 0).measures.flop_per_ray ==
+          Approx(13 * (8 * 34 + 9) / 100.0));
+}
+
+TEST_CASE("profile: shading has bytes but no operations, nor have totals that it is part of", "[profile]") {
+    Measurement m = measurement();
+    for (TimelineRecord& frame : m.frames) {
+        frame.launches.push_back(launch("shade", 1, 40, 15 * ms, 16 * ms));
+    }
+    // One frame is three times as long: there a later place is free.
+    m.frames[1].launches.back().started_ns = 50 * ms;
+    m.frames[1].launches.back().ended_ns = 51 * ms;
+    const Profile profile = summarize(m);
+    const ProfileMeasures& shade = row_of(profile.rows, "shade", 1).measures;
+    // Each ray 60; each of 10 hits the exact ray, its primitive and triangle, the surface, light of a lamp;
+    // and of two groups the material and the lamp.
+    CHECK(shade.bytes_per_ray == Approx((40 * 60 + 10 * (48 + 16 + 36 + 24 + 12) + 2 * (128 + 64)) / 40.0));
+    CHECK(!shade.flop_per_ray);
+    CHECK(!shade.gflop_per_s);
+    CHECK(!profile.generation_totals[1].measures.flop_per_ray);
+    CHECK(profile.generation_totals[0].measures.flop_per_ray);
 }
 
 TEST_CASE("profile: totals are the sums of rows", "[profile]") {
@@ -108,7 +140,7 @@ TEST_CASE("profile: totals are the sums of rows", "[profile]") {
     CHECK(first.rays_in == 100);
     CHECK(first.rays_out == 40);
     CHECK(first.node_visits_per_ray == Approx(5.8));
-    CHECK(!first.flop_per_ray);  // generate's is not declared
+    CHECK(first.flop_per_ray == Approx((13 * 249 + 20000 + 1000 + 180 * 37) / 100.0));
     CHECK(profile.generation_totals[1].measures.flop_per_ray == Approx((10000 + 500 + 50 * 37) / 40.0));
 }
 
@@ -148,7 +180,7 @@ TEST_CASE("profile: the JSON is what its schema says", "[profile]") {
     wrong = json;
     wrong["rows"][0]["more"] = 1;
     CHECK(schema.refusal(wrong) != "");
-    CHECK(json.at("rows")[0].at("flop_per_ray").is_null());
+    CHECK(json.at("rows")[0].at("node_visits_per_ray").is_null());
 }
 
 TEST_CASE("profile: the CSV has as many cells in each line, one line a row", "[profile]") {
