@@ -109,7 +109,7 @@ ExitCode run_profile(const ProfileOptions& options, const CommonOptions& common)
         nlohmann::ordered_json event{{"event", "profile"}};
         event.update(nlohmann::ordered_json::parse(profile_json(profile)));
         print_event(event);
-    } else {
+    } else if (!common.quiet) {
         print(profile_text(profile));
     }
     const std::uint64_t compiled = profile.compiles_in_setup + profile.compiles_during_render;

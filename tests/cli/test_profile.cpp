@@ -161,9 +161,15 @@ TEST_CASE("profile: the trace has a slice for each launch, tracks with names and
     }
 }
 
-TEST_CASE("profile: with --json the profile is one event", "[cli]") {
-    const ProcessResult run = run_sahl(
-        {"profile", scene_file("cli_mirrors.nff"), "--size", "16x16", "--repeat", "1", "--json", "-q"});
+TEST_CASE("profile: -q prints nothing, with --json the profile is one event", "[cli]") {
+    const std::vector<std::string> quiet{
+        "profile", scene_file("cli_mirrors.nff"), "--size", "16x16", "--repeat", "1", "-q"};
+    const ProcessResult nothing = run_sahl(quiet);
+    CHECK(nothing.status == 0);
+    CHECK(nothing.out + nothing.err == "");
+    std::vector<std::string> with_event = quiet;
+    with_event.push_back("--json");
+    const ProcessResult run = run_sahl(with_event);
     REQUIRE(run.status == 0);
     std::vector<json> events = json_lines(run.out);
     REQUIRE(events.size() == 1);
@@ -182,6 +188,11 @@ TEST_CASE("profile: --assert-no-jit fails with compiles and passes after sahl wa
     CHECK(cold.status == 9);
     CHECK(contains(cold.err, "sahl warm"));
     options.environment["SAHL_CACHE_DIR"] = (folder.path() / "other").string();
+    const auto cached_bytes = [&] {
+        std::uintmax_t bytes = 0;
+        for (const auto& file : fs::directory_iterator(folder.path() / "other")) bytes += file.file_size();
+        return bytes;
+    };
     for (const std::vector<std::string>& way : {std::vector<std::string>{}, {"--traversal", "scalar"}}) {
         std::vector<std::string> warm{"warm", "--json"};
         warm.insert(warm.end(), way.begin(), way.end());
@@ -195,6 +206,14 @@ TEST_CASE("profile: --assert-no-jit fails with compiles and passes after sahl wa
         CHECK(second.status == 0);
         CHECK(contains(second.out, "during render: 0, before: 0"));
     }
+    // A render and its AOVs add no kernel either.
+    const std::uintmax_t warm_bytes = cached_bytes();
+    const ProcessResult image = run_sahl({"render", scene_file("cli_mirrors.nff"), "--size", "16x16", "--aov",
+                                          "N", "-o", (folder.path() / "image.exr").string()},
+                                         options);
+    INFO(image.err);
+    CHECK(image.status == 0);
+    CHECK(cached_bytes() == warm_bytes);
     CHECK(json_lines(run_sahl({"warm", "--json"}, options).out).back().at("compiled") == 0);
 }
 
