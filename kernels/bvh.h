@@ -41,6 +41,7 @@ typedef struct {
     uchar octant;  // bit k: inverse[k] is negative
     // Kept: compilers make branches of finding them at each node, which no processor can predict.
     NearPlanes near;
+    uint slots[2];  // of children, last to first, a byte each
 } RayBoxTest;
 
 static inline NearPlanes near_planes(uint octant) {
@@ -54,19 +55,26 @@ static inline float8 planes_at(const global BvhNode* node, uint offset) {
 }
 
 /// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
-static inline float finite_inverse(float d) { return 1.0f / (fabs(d) < 1e-18f ? copysign(1e-18f, d) : d); }
+static inline float4 finite_inverse(float4 d) {
+    const float4 magnitude = fabs(d);
+    const float4 inverse = 1.0f / (magnitude < 1e-18f ? (float4)(1e-18f) : magnitude);
+    return as_float4(as_int4(inverse) | (as_int4(d) & (int)0x80000000));
+}
 
 static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float extent) {
     RayBoxTest test;
-    float3 r =
-        (float3)(finite_inverse(direction.x), finite_inverse(direction.y), finite_inverse(direction.z));
-    float3 e = (fabs(origin) + extent) * 0x1p-20f * fabs(r);
-    float3 near = -(origin * r) - e, far = -(origin * r) + e;
-    vstore3(r, 0, test.inverse);
-    vstore3(near, 0, test.near_addend);
-    vstore3(far, 0, test.far_addend);
-    test.octant = (uchar)((r.x < 0.0f ? 1u : 0u) | (r.y < 0.0f ? 2u : 0u) | (r.z < 0.0f ? 4u : 0u));
-    test.near = near_planes(test.octant);
+    const float4 o = (float4)(origin, 0.0f);
+    const float4 r = finite_inverse((float4)(direction, 1.0f));
+    const float4 e = (fabs(o) + extent) * 0x1p-20f * fabs(r);
+    const float4 near = -(o * r) - e, far = -(o * r) + e;
+    vstore3(r.xyz, 0, test.inverse);
+    vstore3(near.xyz, 0, test.near_addend);
+    vstore3(far.xyz, 0, test.far_addend);
+    const uint octant = mask4(r < 0.0f);
+    test.octant = (uchar)octant;
+    test.near = near_planes(octant);
+    test.slots[0] = 0x04050607u ^ octant * 0x01010101u;
+    test.slots[1] = 0x00010203u ^ octant * 0x01010101u;
     return test;
 }
 
@@ -96,13 +104,12 @@ typedef struct {
     float entry;
 } WaitingChild;
 
-/// Puts the children that are met (enter <= leave) on a stack of `size` entries, the one to visit first on
-/// top. Writes eight entries behind `size`, however many are met. Returns the new size.
-static inline uint push_children(const global BvhNode* node, float8 enter, float8 leave, uint octant,
-                                 WaitingChild* stack, uint size) {
+/// Puts the children that are met (enter <= leave) on a stack that ends before `end`, the one to visit first
+/// on top. Writes eight entries from `end` on, however many are met. Returns the stack's new end.
+static inline WaitingChild* push_children(const global BvhNode* node, float8 enter, float8 leave,
+                                          const RayBoxTest* test, WaitingChild* end) {
 #ifdef SAHL_AVX512
-    // Last to first.
-    const int8 slots = (int8)(7, 6, 5, 4, 3, 2, 1, 0) ^ (int8)((int)octant);
+    const int8 slots = convert_int8(as_uchar8(vload2(0, test->slots)));
     enter = __builtin_ia32_permvarsf256(enter, slots);
     leave = __builtin_ia32_permvarsf256(leave, slots);
     const int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
@@ -110,19 +117,19 @@ static inline uint push_children(const global BvhNode* node, float8 enter, float
     const uint16 pairs = __builtin_shufflevector(as_uint8(child), as_uint8(enter), 0, 8, 1, 9, 2, 10, 3, 11,
                                                  4, 12, 5, 13, 6, 14, 7, 15);
     vstore8(as_ulong8(__builtin_ia32_compressdi512_mask(as_long8(pairs), (long8)(0), (uchar)met)), 0,
-            (ulong*)(stack + size));
-    return size + popcount(met);
+            (ulong*)end);
+    return end + popcount(met);
 #else
-    uint order = permute_by_octant(mask8_le(enter, leave), octant);
+    uint order = permute_by_octant(mask8_le(enter, leave), test->octant);
     while (order != 0u) {
         uint position = highest_lane(order);
         order ^= 1u << position;
-        uint slot = position ^ octant;
-        stack[size].child = node->child[slot];
-        stack[size].entry = ((float*)&enter)[slot];
-        ++size;
+        uint slot = position ^ test->octant;
+        end->child = node->child[slot];
+        end->entry = ((float*)&enter)[slot];
+        ++end;
     }
-    return size;
+    return end;
 #endif
 }
 

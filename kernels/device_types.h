@@ -68,12 +68,14 @@ SAHL_STATIC_ASSERT(sizeof(BvhNode) == 256, "BvhNode is four cache lines");
 
 // Up to four triangles; an axis is one line: vertex 0 of the four, vertex 1, vertex 2, and four more numbers,
 // which are no denormals. Unused lanes, behind the others, have NaN vertices.
+// depth_error[k]: how far the depths by which triangle.h finds what lies behind a ray's origin can be off for
+// rays whose shear axis is k.
 typedef struct {
     float x[12];
     sahl_uint id[4];
     float y[12];
     float count;  // of triangles
-    float spare_y[3];
+    float depth_error[3];
     float z[12];
     float spare_z[4];
 } TriangleBlock;

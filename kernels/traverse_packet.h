@@ -198,6 +198,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         Pass pass;
         uint present = begin_pass(&pass, number, instance, extent, rays, hits, groups, pass_numbers[level],
                                   far, cull_far, group_far);
+        pass.axes.alone = (passes & (passes - 1u)) == 0u;
         const uint octant = pass.axes.octant;
         if (size == base) {
             stack[size] = root;

@@ -27,11 +27,11 @@ static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
 /// Asks for the memory of a child, node or leaf, without a branch on which of them it is, which no processor
 /// can predict.
 static inline void prefetch_child(const Bvh* bvh, uint child) {
-    const ulong is_leaf = (ulong)((int)child >> 31);
-    const ulong node = (ulong)(bvh->nodes + child);
-    const ulong leaf = (ulong)leaf_block(bvh, child);
-    const ulong lines = node ^ ((node ^ leaf) & is_leaf);
-    prefetch_lines((const global void*)lines, 4u);
+    const uint leaf = child >> 31;
+    const ulong arrays[2] = {(ulong)bvh->nodes, (ulong)bvh->leaves};
+    // A node is four lines.
+    const ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES << (2u - 2u * leaf);
+    prefetch_lines((const global void*)(arrays[leaf] + offset), 4u);
 }
 
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,
@@ -139,7 +139,7 @@ SAHL_INLINE void traverse(const Bvh* bvh, const Ray* ray, HitState* state, bool 
             float8 enter, leave;
             SAHL_COUNT_NODE(bvh, SAHL_NODE_FLOP);
             intersect_children(node, &here.boxes, state->t_min, cull_t, &enter, &leave);
-            size = push_children(node, enter, leave, here.boxes.octant, waiting, size);
+            size = (uint)(push_children(node, enter, leave, &here.boxes, waiting + size) - waiting);
         }
         do {
             if (state->inside_of != SAHL_WORLD && size == world_size) {

@@ -36,11 +36,12 @@ typedef struct {
 typedef struct {
     RayBoxTest boxes;  // in the world or in an instance
     float cull_t;
-    uint index;  // of the ray
-    uint size;   // of its stack, whose top is the ray's next step
+    uint index;         // of the ray
+    WaitingChild* top;  // of its stack: the ray's next step
     RayShear shear;
     HitState state;
     Ray ray;  // in the same space
+    WaitingChild* bottom;
 } __attribute__((aligned(64))) StreamRay;
 
 /// Waiting children. An odd number of cache lines, so that the stacks' bottoms do not compete for the same
@@ -49,21 +50,31 @@ typedef struct {
     WaitingChild waiting[SAHL_LEVELS * SAHL_STACK_SIZE + 8u];
 } __attribute__((aligned(64))) StreamStack;
 
+/// Rays whose next step is of one kind.
+typedef struct {
+    StreamRay* rays[SAHL_STREAM_WIDTH];
+    uint count;
+} StepList;
+
 static inline void put_into_space(StreamRay* ray, const TracedRay* traced) {
     ray->boxes = traced->boxes;
     ray->ray = traced->ray;
     ray->shear = traced->shear;
 }
 
-static inline uint top_of(const StreamStack* stack, uint size) { return stack->waiting[size - 1u].child; }
+static inline void push(StreamRay* ray, uint child, float entry) {
+    ++ray->top;
+    ray->top->child = child;
+    ray->top->entry = entry;
+}
 
 /// Takes the waiting children that begin behind the hit off the stack.
-static inline void drop_hidden(StreamRay* ray, const StreamStack* stack) {
-    uint size = ray->size;
-    while (stack->waiting[size - 1u].entry > ray->cull_t) {
-        --size;
+static inline void drop_hidden(StreamRay* ray) {
+    WaitingChild* top = ray->top;
+    while (top->entry > ray->cull_t) {
+        --top;
     }
-    ray->size = size;
+    ray->top = top;
 }
 
 static inline Ray source_ray(const RaySource* source, uint index, bool any_hit) {
@@ -72,7 +83,7 @@ static inline Ray source_ray(const RaySource* source, uint index, bool any_hit) 
 }
 
 static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index, StreamRay* ray,
-                             StreamStack* stack, bool any_hit) {
+                             bool any_hit) {
     const Ray from = source_ray(source, index, any_hit);
     const float t_max = any_hit ? source->shadow_rays->t_max[index] : INFINITY;
     const TracedRay traced = traced_ray(from.origin, from.direction, &from, SAHL_WORLD, bvh->extent);
@@ -80,11 +91,10 @@ static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index
     ray->state = hit_state(0.0f, t_max);
     ray->cull_t = t_max * SAHL_CULL_SLACK;
     ray->index = index;
-    stack->waiting[0].child = SAHL_CHILD_END;
-    stack->waiting[0].entry = -INFINITY;
-    stack->waiting[1].child = 0u;
-    stack->waiting[1].entry = 0.0f;
-    ray->size = can_meet_anything(&from) ? 2u : 1u;
+    ray->top = ray->bottom;
+    if (can_meet_anything(&from)) {
+        push(ray, 0u, 0.0f);
+    }
 }
 
 static inline void finish_ray(const RaySource* source, const StreamRay* ray, bool any_hit) {
@@ -95,20 +105,18 @@ static inline void finish_ray(const RaySource* source, const StreamRay* ray, boo
     }
 }
 
-/// Opens the node on top of the stack. Returns the new top.
-static inline uint visit_node(const Bvh* bvh, StreamRay* ray, StreamStack* stack) {
-    const uint size = ray->size - 1u;
-    const global BvhNode* node = bvh->nodes + stack->waiting[size].child;
+/// Opens the node on top of the stack.
+static inline void visit_node(const Bvh* bvh, StreamRay* ray) {
+    const global BvhNode* node = bvh->nodes + ray->top->child;
     float8 enter, leave;
     SAHL_COUNT_NODE(bvh, SAHL_NODE_FLOP);
     intersect_children(node, &ray->boxes, 0.0f, ray->cull_t, &enter, &leave);
-    ray->size = push_children(node, enter, leave, ray->boxes.octant, stack->waiting, size);
-    return top_of(stack, ray->size);
+    ray->top = push_children(node, enter, leave, &ray->boxes, ray->top) - 1;
 }
 
 /// Goes into the instance that was on top of the stack, or comes back out of it.
-static inline void change_space(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
-                                uint child, bool any_hit) {
+static inline void change_space(const Bvh* bvh, const RaySource* source, StreamRay* ray, uint child,
+                                bool any_hit) {
     const Ray in_world = source_ray(source, ray->index, any_hit);
     if (child == SAHL_CHILD_LEAVE) {
         const TracedRay traced =
@@ -124,90 +132,91 @@ static inline void change_space(const Bvh* bvh, const RaySource* source, StreamR
     }
     put_into_space(ray, &traced);
     ray->state.inside_of = i + 1u;
-    stack->waiting[ray->size].child = SAHL_CHILD_LEAVE;
-    stack->waiting[ray->size].entry = -INFINITY;
-    stack->waiting[ray->size + 1u].child = bvh->instances[i].root;
-    stack->waiting[ray->size + 1u].entry = 0.0f;
-    ray->size += 2u;
+    push(ray, SAHL_CHILD_LEAVE, -INFINITY);
+    push(ray, bvh->instances[i].root, 0.0f);
 }
 
-/// Does what the leaf on top of the stack asks for. What is not a block of triangles is kept apart, so that
+/// Does what a leaf asks for. What is not a block of triangles is kept apart, so that
 /// it takes no registers from these.
-SAHL_NOINLINE void visit_other_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray,
-                                    StreamStack* stack, uint child, bool any_hit) {
+SAHL_NOINLINE void visit_other_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, uint child,
+                                    bool any_hit) {
     if (child_kind(child) >= SAHL_KIND_INSTANCE) {
-        change_space(bvh, source, ray, stack, child, any_hit);
+        change_space(bvh, source, ray, child, any_hit);
     } else {
         intersect_leaf(bvh, child, &ray->ray, &ray->shear, &ray->boxes, &ray->state, any_hit);
     }
 }
 
-static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, StreamStack* stack,
-                              bool any_hit) {
-    const uint child = stack->waiting[--ray->size].child;
+/// Takes the leaf on top off the stack and does what it asks for.
+static inline void visit_leaf(const Bvh* bvh, const RaySource* source, StreamRay* ray, bool any_hit) {
+    const uint child = ray->top->child;
+    --ray->top;
     if (child_kind(child) == SAHL_KIND_TRIANGLE) {
         SAHL_COUNT_BLOCK(bvh, SAHL_KIND_TRIANGLE, 1u);
         intersect_triangles((const global TriangleBlock*)leaf_block(bvh, child), &ray->ray, &ray->shear,
                             &ray->boxes, &ray->state, any_hit);
     } else {
-        visit_other_leaf(bvh, source, ray, stack, child, any_hit);
+        visit_other_leaf(bvh, source, ray, child, any_hit);
     }
     ray->cull_t = ray->state.t * SAHL_CULL_SLACK;
     if (any_hit && (ray->state.occlusion & SAHL_HIT_OPAQUE)) {
-        ray->size = 1u;
+        ray->top = ray->bottom;
     }
-    drop_hidden(ray, stack);
+    drop_hidden(ray);
 }
 
 /// Puts a ray on the list of its next step and asks for the memory of that. Both lists are written and one
 /// counts it: no branch.
-SAHL_INLINE void enlist(const Bvh* bvh, uint place, uint child, uint* at_node, uint* node_count,
-                        uint* at_leaf, uint* leaf_count) {
+SAHL_INLINE void enlist(const Bvh* bvh, StreamRay* ray, StepList* at_node, StepList* at_leaf) {
+    const uint child = ray->top->child;
     prefetch_child(bvh, child);
     const uint leaf = child >> 31;
-    at_node[*node_count] = place;
-    at_leaf[*leaf_count] = place;
-    *node_count += 1u - leaf;
-    *leaf_count += leaf;
+    at_node->rays[at_node->count] = ray;
+    at_leaf->rays[at_leaf->count] = ray;
+    at_node->count += 1u - leaf;
+    at_leaf->count += leaf;
 }
 
 /// Traces rays first..end-1 of the source: the first hits, or with any_hit what kinds of surfaces there are.
 SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
     StreamRay flight[SAHL_STREAM_WIDTH];
     StreamStack stacks[SAHL_STREAM_WIDTH];
-    // Places of rays whose next step is a node, and of those whose next step is a leaf.
-    uint at_node[SAHL_STREAM_WIDTH], at_leaf[SAHL_STREAM_WIDTH];
-    uint node_count = 0, leaf_count = 0;
+    StepList at_node, at_leaf;
+    at_node.count = 0u;
+    at_leaf.count = 0u;
     uint next = first;
     for (uint place = 0; place < SAHL_STREAM_WIDTH && next < end; ++place, ++next) {
-        start_ray(bvh, source, next, flight + place, stacks + place, any_hit);
-        at_leaf[leaf_count++] = place;
+        StreamRay* ray = flight + place;
+        ray->bottom = stacks[place].waiting;
+        ray->bottom->child = SAHL_CHILD_END;
+        ray->bottom->entry = -INFINITY;
+        start_ray(bvh, source, next, ray, any_hit);
+        at_leaf.rays[at_leaf.count++] = ray;
     }
-    while (node_count + leaf_count != 0u) {
-        const uint nodes = node_count;
-        node_count = 0;
+    while (at_node.count + at_leaf.count != 0u) {
+        const uint nodes = at_node.count;
+        at_node.count = 0u;
         for (uint k = 0; k < nodes; ++k) {
-            const uint place = at_node[k];
-            const uint top = visit_node(bvh, flight + place, stacks + place);
-            enlist(bvh, place, top, at_node, &node_count, at_leaf, &leaf_count);
+            StreamRay* ray = at_node.rays[k];
+            visit_node(bvh, ray);
+            enlist(bvh, ray, &at_node, &at_leaf);
         }
-        const uint leaves = leaf_count;
-        leaf_count = 0;
+        const uint leaves = at_leaf.count;
+        at_leaf.count = 0u;
         for (uint k = 0; k < leaves; ++k) {
-            const uint place = at_leaf[k];
-            StreamRay* ray = flight + place;
-            const uint top = top_of(stacks + place, ray->size);
-            if (top == SAHL_CHILD_END) {
+            StreamRay* ray = at_leaf.rays[k];
+            const uint child = ray->top->child;
+            if (child == SAHL_CHILD_END) {
                 finish_ray(source, ray, any_hit);
                 if (next == end) {
                     continue;
                 }
-                start_ray(bvh, source, next, ray, stacks + place, any_hit);
+                start_ray(bvh, source, next, ray, any_hit);
                 ++next;
-            } else if (top & SAHL_CHILD_LEAF) {
-                visit_leaf(bvh, source, ray, stacks + place, any_hit);
+            } else if (child & SAHL_CHILD_LEAF) {
+                visit_leaf(bvh, source, ray, any_hit);
             }
-            enlist(bvh, place, top_of(stacks + place, ray->size), at_node, &node_count, at_leaf, &leaf_count);
+            enlist(bvh, ray, &at_node, &at_leaf);
         }
     }
 }

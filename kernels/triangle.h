@@ -5,6 +5,8 @@
 // contraction each edge function is right or zero, never of the wrong sign, so that tests which
 // include zero leak nothing and need no double precision. The extent test rejects collinear
 // triangles, which would be hit far along their line.
+// What lies behind the ray's origin is left out at the same branch, as every ray that starts on a mesh
+// crosses the triangle that it starts on: the interpolated depth says so, unless it is within its error.
 // The interpolated distance is poor on slivers; t comes from the plane instead, kept to the
 // triangle's own box, which it leaves when the ray lies (nearly) in the plane.
 #ifndef SAHL_TRIANGLE_H
@@ -21,7 +23,12 @@ typedef struct {
     float sx, sy;      // minus the shear factors
 } RayShear;
 
-static inline float component(float3 v, uint axis) { return axis == 0u ? v.x : (axis == 1u ? v.y : v.z); }
+/// Components axis, axis + 1 and axis + 2 (mod 3).
+static inline float4 from_axis(float3 v, uint axis) {
+    const float4 v4 = (float4)(v, 1.0f);
+    const int4 is0 = (int4)(axis == 0u ? -1 : 0), is1 = (int4)(axis == 1u ? -1 : 0);
+    return select(select(v4.zxyw, v4.yzxw, is1), v4, is0);
+}
 
 static inline RayShear ray_shear(float3 origin, float3 direction) {
     float3 a = fabs(direction);
@@ -29,12 +36,13 @@ static inline RayShear ray_shear(float3 origin, float3 direction) {
     shear.kz = a.x >= a.y && a.x >= a.z ? 0u : (a.y >= a.z ? 1u : 2u);
     shear.kx = shear.kz == 2u ? 0u : shear.kz + 1u;
     shear.ky = shear.kx == 2u ? 0u : shear.kx + 1u;
-    shear.ox = component(origin, shear.kx);
-    shear.oy = component(origin, shear.ky);
-    shear.oz = component(origin, shear.kz);
-    float dz = component(direction, shear.kz);
-    shear.sx = -(component(direction, shear.kx) / dz);
-    shear.sy = -(component(direction, shear.ky) / dz);
+    const float4 o = from_axis(origin, shear.kx), d = from_axis(direction, shear.kx);
+    shear.ox = o.x;
+    shear.oy = o.y;
+    shear.oz = o.z;
+    const float4 slopes = d / d.z;
+    shear.sx = -slopes.x;
+    shear.sy = -slopes.y;
     return shear;
 }
 
@@ -72,10 +80,13 @@ SAHL_INLINE void intersect_triangles(const global TriangleBlock* block, const Ra
 
     // Groups of four lanes: w = e(v0, v1), u = e(v1, v2), v = e(v2, v0); the last group is junk.
     float16 edges = x.s456789ab0123cdef * y - y.s456789ab0123cdef * x;
-    // Both signs in one word.
-    uint seen = mask16_ge(edges, (float16)(0.0f)) | mask16_le(edges, (float16)(0.0f)) << 16;
-    seen &= seen >> 4 & seen >> 8;
-    uint lanes = (seen | seen >> 16) & 15u;
+    const float4 w = edges.s0123, u = edges.s4567, v = edges.s89ab;
+    const float4 determinant = (u + v) + w;
+    const float4 depth = fma(u, z.s0123, fma(v, z.s4567, w * z.s89ab));
+    const int4 sign = (as_int4(determinant) ^ as_int(boxes->inverse[shear->kz])) & (int)0x80000000;
+    const int4 ahead = as_float4(as_int4(depth) ^ sign) >= -block->depth_error[shear->kz];
+    const float4 least = SAHL_MIN(SAHL_MIN(u, v), w), greatest = SAHL_MAX(SAHL_MAX(u, v), w);
+    uint lanes = mask4(((least >= 0.0f) | (greatest <= 0.0f)) & ahead);
     if (lanes == 0u) {
         return;
     }
@@ -94,8 +105,6 @@ SAHL_INLINE void intersect_triangles(const global TriangleBlock* block, const Ra
     uint reach = mask16_ge(x, (float16)(0.0f)) | mask16_ge(y, (float16)(0.0f)) << 16;
     uint back = mask16_le(x, (float16)(0.0f)) | mask16_le(y, (float16)(0.0f)) << 16;
     uint extent = (reach | reach >> 4 | reach >> 8) & (back | back >> 4 | back >> 8);
-    float4 w = edges.s0123, u = edges.s4567, v = edges.s89ab;
-    float4 determinant = (u + v) + w;
     lanes &= extent & extent >> 16 & mask4(determinant != 0.0f);
     while (lanes != 0u) {
         uint lane = lowest_lane(lanes);

@@ -13,6 +13,7 @@ typedef struct {
     uint kx, ky, kz;
     uint instance;
     bool common_origin;
+    bool alone;  // no other pass is left
     float origin[3];
 } PassAxes;
 
@@ -22,9 +23,9 @@ typedef struct {
     TrianglePlanes of;
 } LazyPlanes;
 
-/// Three sheared vertices.
+/// Three vertices, x and y of them sheared.
 typedef struct {
-    float16 ax, ay, bx, by, cx, cy;
+    float16 ax, ay, az, bx, by, bz, cx, cy, cz;
 } ShearedTriangle;
 
 /// keep_to_box() for rays of one octant.
@@ -100,6 +101,14 @@ static inline bool offer_triangle(const global TriangleBlock* block, uint lane, 
     return take_hits(hits, far, lanes, t, v * scale, w * scale, id, pass->instance, any_hit);
 }
 
+/// The lanes for which the triangle may lie ahead of the origin (triangle.h).
+static inline Lanes16 not_behind(const global TriangleBlock* block, const ShearedTriangle* s, float16 u,
+                                 float16 v, float16 w, const RayGroup* rays, const PassAxes* pass) {
+    const float16 depth = fma(u, s->az, fma(v, s->bz, w * s->cz));
+    const int16 sign = (as_int16((u + v) + w) ^ as_int16(rays->inverse[pass->kz])) & (int16)((int)0x80000000);
+    return less_equal16((float16)(-block->depth_error[pass->kz]), as_float16(as_int16(depth) ^ sign));
+}
+
 /// The rays (of one pass) against the block's triangles. Returns whether a hit was taken.
 static inline bool intersect_triangles16(const global TriangleBlock* block, LazyPlanes* planes,
                                          const float* shifted, const RayGroup* rays, const PassAxes* pass,
@@ -110,33 +119,49 @@ static inline bool intersect_triangles16(const global TriangleBlock* block, Lazy
     const global float* z = axes + 16u * pass->kz;
     float16 ox = rays->origin[pass->kx], oy = rays->origin[pass->ky], oz = rays->origin[pass->kz];
     float16 sx = rays->shear_x, sy = rays->shear_y;
+    // Those of other passes and those that are occluded need not be looked at. Most rays of a closest hit's
+    // only pass are active, and the test costs more than it saves.
+    const Lanes16 active =
+        any_hit || !pass->alone ? less16((float16)(0.0f), *far) : equal16((int16)(0), (int16)(0));
     bool taken = false;
     const uint count = (uint)block->count;
     for (uint lane = 0; lane < count; ++lane) {
         ShearedTriangle s;
         if (pass->common_origin) {
             const float* p = shifted + lane;
-            s.ax = fma((float16)(p[32]), sx, (float16)(p[0]));
-            s.ay = fma((float16)(p[32]), sy, (float16)(p[16]));
-            s.bx = fma((float16)(p[36]), sx, (float16)(p[4]));
-            s.by = fma((float16)(p[36]), sy, (float16)(p[20]));
-            s.cx = fma((float16)(p[40]), sx, (float16)(p[8]));
-            s.cy = fma((float16)(p[40]), sy, (float16)(p[24]));
+            s.az = (float16)(p[32]);
+            s.bz = (float16)(p[36]);
+            s.cz = (float16)(p[40]);
+            s.ax = fma(s.az, sx, (float16)(p[0]));
+            s.ay = fma(s.az, sy, (float16)(p[16]));
+            s.bx = fma(s.bz, sx, (float16)(p[4]));
+            s.by = fma(s.bz, sy, (float16)(p[20]));
+            s.cx = fma(s.cz, sx, (float16)(p[8]));
+            s.cy = fma(s.cz, sy, (float16)(p[24]));
         } else {
-            float16 az = z[lane] - oz, bz = z[4u + lane] - oz, cz = z[8u + lane] - oz;
-            s.ax = fma(az, sx, x[lane] - ox);
-            s.ay = fma(az, sy, y[lane] - oy);
-            s.bx = fma(bz, sx, x[4u + lane] - ox);
-            s.by = fma(bz, sy, y[4u + lane] - oy);
-            s.cx = fma(cz, sx, x[8u + lane] - ox);
-            s.cy = fma(cz, sy, y[8u + lane] - oy);
+            s.az = z[lane] - oz;
+            s.bz = z[4u + lane] - oz;
+            s.cz = z[8u + lane] - oz;
+            s.ax = fma(s.az, sx, x[lane] - ox);
+            s.ay = fma(s.az, sy, y[lane] - oy);
+            s.bx = fma(s.bz, sx, x[4u + lane] - ox);
+            s.by = fma(s.bz, sy, y[4u + lane] - oy);
+            s.cx = fma(s.cz, sx, x[8u + lane] - ox);
+            s.cy = fma(s.cz, sy, y[8u + lane] - oy);
         }
         float16 w = s.bx * s.ay - s.by * s.ax;
         float16 u = s.cx * s.by - s.cy * s.bx;
         float16 v = s.ax * s.cy - s.ay * s.cx;
         float16 least = SAHL_MIN(SAHL_MIN(u, v), w), greatest = SAHL_MAX(SAHL_MAX(u, v), w);
         Lanes16 inside = less_equal16((float16)(0.0f), least) | less_equal16(greatest, (float16)(0.0f));
+        inside &= active;
         if (any16(inside)) {
+            if (any_hit) {
+                inside &= not_behind(block, &s, u, v, w, rays, pass);
+                if (!any16(inside)) {
+                    continue;
+                }
+            }
             if (!planes->known) {
                 planes->of = triangle_planes(block);
                 planes->known = true;

@@ -29,13 +29,33 @@ void fill_ids(Block& block) {
     std::fill(std::begin(block.id), std::end(block.id), unused_id);
 }
 
+/// Fills depth_error. A triangle that the line of a ray with shear axis k crosses, its origin between the
+/// vertices' depths, has sheared coordinates x, y, z of at most a = E_i + E_k, b = E_j + E_k and E_k, E being
+/// the extents of its box; each x and y is off by at most 3u a and 3u b (u = 2^-24), an edge function by 16u
+/// ab, and their sum weighted with the depths by 66u ab E_k, for which 2^-16 ab E_k has room.
+void set_depth_errors(device::TriangleBlock& block, std::uint32_t count) {
+    const float* axes[] = {block.x, block.y, block.z};
+    // Beyond the denormals, which are slow.
+    std::fill(std::begin(block.depth_error), std::end(block.depth_error), 1e-30F);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        float extent[3];
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            const auto [lo, hi] = std::minmax({axes[axis][lane], axes[axis][4 + lane], axes[axis][8 + lane]});
+            extent[axis] = hi - lo;
+        }
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const float a = extent[(k + 1) % 3] + extent[k], b = extent[(k + 2) % 3] + extent[k];
+            block.depth_error[k] = std::max(block.depth_error[k], extent[k] * 0x1p-16F * a * b);
+        }
+    }
+}
+
 void pack_triangles(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,
                     device::TriangleBlock& block) {
     std::fill(std::begin(block.x), std::end(block.x), nan);
     std::fill(std::begin(block.y), std::end(block.y), nan);
     std::fill(std::begin(block.z), std::end(block.z), nan);
     block.count = static_cast<float>(leaf.count);
-    std::fill(std::begin(block.spare_y), std::end(block.spare_y), 1.0F);
     std::fill(std::begin(block.spare_z), std::end(block.spare_z), 1.0F);
     fill_ids(block);
     for_each_lane(scene, lowered, leaf, [&](std::uint32_t k, const float* data, std::uint32_t id) {
@@ -46,6 +66,7 @@ void pack_triangles(const Scene& scene, const LoweredScene& lowered, const BvhLe
         }
         block.id[k] = id;
     });
+    set_depth_errors(block, leaf.count);
 }
 
 void pack_spheres(const Scene& scene, const LoweredScene& lowered, const BvhLeaf& leaf,

@@ -41,6 +41,7 @@ const std::vector<Layout> layouts = {
     FIELD(TriangleBlock, id),
     FIELD(TriangleBlock, y),
     FIELD(TriangleBlock, count),
+    FIELD(TriangleBlock, depth_error),
     FIELD(TriangleBlock, z),
     SIZE(SphereBlock),
     FIELD(SphereBlock, x),

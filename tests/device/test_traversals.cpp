@@ -133,6 +133,43 @@ TEST_CASE("every traversal finds the same at many small triangles, from near and
     }
 }
 
+// Streams leave out what lies behind a ray's origin before they know the distance, packets do not.
+TEST_CASE("rays that start on triangles or a rounding away find what lies just ahead, slivers too") {
+    RayTracer tracer;
+    Random random(77);
+    for (const double offset : {0.0, 30.0}) {
+        for (const double thickness : {1.0, 1e-2, 1e-5}) {
+            CAPTURE(offset, thickness);
+            const dvec3 center = offset * unit_vector(random);
+            Scene scene;
+            std::vector<TestRay> rays;
+            for (int i = 0; i < 200; ++i) {
+                const dvec3 along = unit_vector(random), across = thickness * unit_vector(random);
+                const dvec3 at = center + dvec3(in_ball(random)) * 2.0;
+                const vec3 corners[] = {vec3(at), vec3(at + along),
+                                        vec3(at + uniform(random, 0, 1) * along + across)};
+                oracle::add_triangle(scene, {corners[0], corners[1], corners[2]}, Material{});
+                const dvec3 normal =
+                    glm::cross(dvec3(corners[1] - corners[0]), dvec3(corners[2] - corners[0]));
+                for (int k = 0; k < 50; ++k) {
+                    const double u = uniform(random, 0, 1), v = uniform(random, 0, 1 - u);
+                    const dvec3 on =
+                        (1 - u - v) * dvec3(corners[0]) + u * dvec3(corners[1]) + v * dvec3(corners[2]);
+                    const double away = std::pow(10.0, uniform(random, -9, -2)) * (k % 2 == 0 ? 1 : -1);
+                    const vec3 from(on + away * glm::normalize(normal));
+                    // At the triangle, or anywhere.
+                    const vec3 aim = k % 3 == 0 ? vec3(unit_vector(random))
+                                                : vec3(on + 0.1 * along * uniform(random, -1, 1)) - from;
+                    rays.push_back({from, aim});
+                }
+            }
+            const std::vector<TestHit> hits = tracer.intersect(tracer.upload(scene), rays);
+            CHECK(std::count_if(hits.begin(), hits.end(),
+                                [](const TestHit& hit) { return hit.hit() && hit.t < 1; }) > 1000);
+        }
+    }
+}
+
 TEST_CASE("batches of any size: each ray is traced, and nothing behind the last") {
     RayTracer tracer;
     Random random(73);
