@@ -14,14 +14,13 @@ from measure import BUILD, ROOT, SAHL, Run, machine_facts, spread, spread_text, 
 
 PROBE = BUILD / "bench" / "sahl_startup_probe.so"
 EMPTY = BUILD / "bench" / "sahl_empty"
-EMPTY_WITHOUT_IMAGES = BUILD / "bench" / "sahl_empty_without_images"
+EMPTY_WITH_IMAGES = BUILD / "bench" / "sahl_empty_with_images"
 SCENE = ROOT / "scenes" / "whitted.json"
 CACHE_FILE = ".sahl-program"
 
 # In the order in which they happen.
 PARTS = {
-    "loader": "the loader, constructors of all libraries but OpenImageIO's",
-    "oiio": "OpenImageIO's libraries and their constructors",
+    "loader": "the loader, constructors of libraries",
     "scene": "command line, scene file",
     "platform": "PoCL, its device, a queue",
     "program": "kernel sources, program cache",
@@ -31,6 +30,7 @@ PARTS = {
     "first_launch": "each kernel's first launch, until it starts: loading or compiling it",
     "render": "the other time until the image is there",
     "store": "storing the compiled kernels",
+    "oiio": "loading OpenImageIO's libraries",
     "encode": "image file",
     "exit": "freeing, ending",
 }
@@ -84,8 +84,9 @@ class Timeline:
             previous_end = ended
         return waited
 
-    def split(self, output, oiio_share):
-        """Milliseconds of each of PARTS, and of the way to the first pixel. `oiio_share`: of the way to main()."""
+    def split(self, output, oiio_ns):
+        """Milliseconds of each of PARTS, and of the way to the first pixel. `oiio_ns`: what loading its libraries takes,
+        which comes between the image and its file."""
         written = max(time for time, path in self.renames if path == str(output))
         queue = self.last_end("clCreateCommandQueue", written)
         build_start, build_end = self.first("clBuildProgram"), self.last_end("clBuildProgram", written)
@@ -93,8 +94,7 @@ class Timeline:
         tested = self.stored(build_end, launch)
         image = self.last_end("clWaitForEvents", written)
         times = {
-            "loader": self.main - oiio_share * self.to_main(),
-            "oiio": self.main,
+            "loader": self.main,
             "scene": self.first("clGetPlatformIDs"),
             "platform": queue,
             "program": build_start,
@@ -103,6 +103,7 @@ class Timeline:
             "upload": launch,
             "render": image,
             "store": self.stored(image, written),
+            "oiio": self.stored(image, written) + oiio_ns,
             "encode": written,
             "exit": self.end,
         }
@@ -145,32 +146,32 @@ class Bench:
         return Timeline(run, log)
 
 
-def split_of_fastest(bench, timelines, oiio_share):
+def split_of_fastest(bench, timelines, oiio_ns):
     """Of one process, so that parts add up, the one that other work disturbed least. And the spread of the time to the
     first pixel over all of them."""
     fastest = min(timelines, key=lambda timeline: timeline.end - timeline.start)
-    first_pixels = [timeline.split(bench.output, oiio_share)[1] for timeline in timelines]
-    return fastest.split(bench.output, oiio_share)[0], spread(first_pixels)
+    first_pixels = [timeline.split(bench.output, oiio_ns)[1] for timeline in timelines]
+    return fastest.split(bench.output, oiio_ns)[0], spread(first_pixels)
 
 
 def measure(bench, repetitions, cold_repetitions):
     Run(bench.command, bench.warm_cache())
-    warm, cold, empty, empty_without_images = [], [], [], []
+    warm, cold, empty, empty_with_images = [], [], [], []
     for repetition in range(repetitions):
         bench.timed("warm", bench.command, bench.warm_cache())
         warm.append(bench.watched(bench.command, bench.warm_cache()))
         bench.timed("help", [SAHL, "--help"])
         bench.timed("empty", [EMPTY])
-        bench.timed("empty_without_images", [EMPTY_WITHOUT_IMAGES])
+        bench.timed("empty_with_images", [EMPTY_WITH_IMAGES])
         empty.append(bench.watched([EMPTY]).to_main())
-        empty_without_images.append(bench.watched([EMPTY_WITHOUT_IMAGES]).to_main())
+        empty_with_images.append(bench.watched([EMPTY_WITH_IMAGES]).to_main())
         if repetition < cold_repetitions:
             bench.timed("cold", bench.command, bench.cold_cache())
             cold.append(bench.watched(bench.command, bench.cold_cache()))
     times = {name: spread(values) for name, values in bench.times.items()}
-    oiio_share = 1 - min(empty_without_images) / min(empty)
-    split, first_pixel = split_of_fastest(bench, warm, oiio_share)
-    cold_split, cold_first_pixel = split_of_fastest(bench, cold, oiio_share)
+    oiio_ns = min(empty_with_images) - min(empty)
+    split, first_pixel = split_of_fastest(bench, warm, oiio_ns)
+    cold_split, cold_first_pixel = split_of_fastest(bench, cold, oiio_ns)
     return {
         "warm_ms": times["warm"]["median"],
         "cold_ms": times["cold"]["median"],
@@ -189,7 +190,7 @@ def print_report(report):
           " (least to most)\n")
     for name, text in (("warm", "64x64 image, warm"), ("cold", "64x64 image, cold"), ("help", "sahl --help"),
                        ("empty", "an empty program with the same libraries"),
-                       ("empty_without_images", "the same without OpenImageIO")):
+                       ("empty_with_images", "the same with OpenImageIO")):
         times = report["times_ms"]
         print(f"  {text:42}{spread_text(times[name]):>24}   processor {times[name + '_processor']['median']:.0f}")
     for name in ("warm", "cold"):

@@ -204,6 +204,7 @@ private:
             const Checkpoints checkpoints = checkpoints_of(order, task, settings, film);
             auto said = Clock::now();
             const auto say_progress = [&](std::uint64_t done, std::uint64_t total) {
+                load_encoders();  // now, as loading keeps PoCL from loading kernels
                 if (Clock::now() - said < between_messages) return;
                 said = Clock::now();
                 socket_.send({{"progress", task.job}, {"done", done}, {"total", total}});

@@ -101,6 +101,7 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
             settings, film,
             [&progress](std::uint64_t done, std::uint64_t all) {
                 defer_interruption();  // there is an image to save
+                load_encoders();       // now, as loading keeps PoCL from loading kernels
                 progress.update(done, all);
             },
             interruption());

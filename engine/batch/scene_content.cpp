@@ -1,8 +1,10 @@
 #include "engine/batch/scene_content.h"
 
-#include <OpenImageIO/hash.h>
+#include <sha1.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <set>
 
@@ -41,20 +43,29 @@ struct FileSummary {
     Texts text_parameters;  ///< with their defaults
 };
 
+/// SHA-1 of what is added.
 class Hasher {
 public:
+    Hasher() { SHA1Init(&sha_); }
     template <class T>
     void add(const T& value) {
-        sha_.append(&value, sizeof(value));
+        add_bytes(&value, sizeof(value));
     }
     void add(std::string_view text) {
         add(text.size());
-        sha_.append(text.data(), text.size());
+        add_bytes(text.data(), text.size());
     }
-    std::string digest() { return sha_.digest(); }
+    void add_bytes(const void* bytes, std::size_t count) {
+        SHA1Update(&sha_, static_cast<const std::uint8_t*>(bytes), count);
+    }
+    std::string digest() {
+        std::array<std::uint8_t, SHA1_DIGEST_LENGTH> bytes{};
+        SHA1Final(bytes.data(), &sha_);
+        return fmt::format("{:02X}", fmt::join(bytes, ""));
+    }
 
 private:
-    OIIO::SHA1 sha_;
+    SHA1_CTX sha_{};
 };
 
 void add_value(Hasher& hasher, const JsonDocument& document, const JsonValue& value) {
@@ -244,8 +255,9 @@ const SceneContent& SceneContents::of(const fs::path& scene,
 }
 
 std::string content_hash(std::string_view bytes) {
-    OIIO::SHA1 sha(bytes.data(), bytes.size());
-    return sha.digest();
+    Hasher hasher;
+    hasher.add_bytes(bytes.data(), bytes.size());
+    return hasher.digest();
 }
 
 bool is_unchanged(const SceneContent& content) {

@@ -141,8 +141,6 @@ const Format& format_of(const fs::path& path) {
                 "'" + path.string() + "' has no extension of an image format; use one of " + known);
 }
 
-bool is_integer(PixelType type) { return type == PixelType::uint8 || type == PixelType::uint16; }
-
 Encoding encoding_of(const fs::path& path, const OutputSettings& settings) {
     const Format& format = format_of(path);
     const PixelType type = pixel_type_of(format, settings);

@@ -31,7 +31,7 @@ const std::array<Format, 5>& image_formats();
 /// By the extension, of any case; a special file without one is a PNG. Throws Error(usage) for others.
 const Format& format_of(const std::filesystem::path& path);
 
-bool is_integer(PixelType type);
+constexpr bool is_integer(PixelType type) { return type == PixelType::uint8 || type == PixelType::uint16; }
 
 struct Encoding {
     const Format* format;

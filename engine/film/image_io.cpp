@@ -1,9 +1,12 @@
 #include "engine/film/image_io.h"
 
+#include <chrono>
+#include <future>
 #include <span>
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/host_steps.h"
+#include "engine/film/image_codecs.h"
 #include "engine/film/image_decode.h"
 #include "engine/film/image_encode.h"
 #include "engine/film/image_format.h"
@@ -19,6 +22,12 @@ void check_output_format(const fs::path& path, const OutputSettings& settings) {
 void check_output(const fs::path& path, const OutputSettings& settings) {
     check_output_format(path, settings);
     check_output_file(path);
+}
+
+void load_encoders() {
+    static const std::shared_future<void> loading =
+        std::async(std::launch::async, [] { image_codecs(ExitCode::output); });
+    if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) loading.get();
 }
 
 std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings, int width, int height,

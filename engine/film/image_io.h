@@ -1,4 +1,5 @@
-// Image files through OpenImageIO: what each format can hold, writing and reading.
+// Image files through OpenImageIO: what each format can hold, writing and reading. OpenImageIO itself is in a
+// library that is loaded when it is first needed.
 #pragma once
 
 #include <cstdint>
@@ -58,6 +59,11 @@ void check_output(const std::filesystem::path& path, const OutputSettings& setti
 /// The same but for whether anything can be written there.
 void check_output_format(const std::filesystem::path& path, const OutputSettings& settings);
 
+/// Loads what encodes images, a fifth of a second's work, in a thread of its own from the first call on. To
+/// be called again and again while an image is rendered: throws Error(output) once it is known that it cannot
+/// be loaded.
+void load_encoders();
+
 /// What write_image takes of memory beside the image and the AOVs, at most: the file and bands of rows
 /// on their way into it. Throws as check_output does for what the format cannot hold.
 std::uint64_t encoder_bytes(const std::filesystem::path& path, const OutputSettings& settings, int width,
@@ -72,15 +78,16 @@ std::vector<unsigned char> encode_image(const std::filesystem::path& path, const
 /// NaN is stored as 0; values beyond what half or float hold as the largest finite value.
 /// `aovs` (of the image's size, EXR only) are stored beside R, G and B in channels of their own, see
 /// aov_names: as they are, Z and N as float, albedo in the pixel type, ids as unsigned integers.
-/// Throws as check_output, Error(output) for what fails in encoding or writing.
+/// Throws as check_output and load_encoders, Error(output) for what fails in encoding or writing.
 void write_image(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                  std::span<const AovImage> aovs = {});
 
 /// Reads any image that OpenImageIO knows into 3 channels: R, G and B if it names them, else the first
 /// three; one channel is replicated. Values as stored, 8-bit code v as v/255, no transfer function.
 /// Throws Error(scene) for a file that is missing, damaged, unknown or not regular, larger than 65536x65536
-/// or not believable in what it claims to hold, Error(memory) for one that does not fit into this
-/// machine's memory. A file made to attack the decoders may crash them: see read_untrusted_image.
+/// or not believable in what it claims to hold, and where nothing can be decoded, Error(memory) for one that
+/// does not fit into this machine's memory. A file made to attack the decoders may crash them: see
+/// read_untrusted_image.
 Image read_image(const std::filesystem::path& path);
 
 /// The same for a file from anywhere: it is decoded in a child process of limited memory and processor

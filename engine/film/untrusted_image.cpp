@@ -1,6 +1,4 @@
 // Damaged images crash decoders, or keep them busy for ever. So the decoding is done where that does no harm.
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <new>
 #include <optional>
@@ -10,6 +8,7 @@
 
 #include "engine/core/child_process.h"
 #include "engine/core/error.h"
+#include "engine/film/image_codecs.h"
 #include "engine/film/image_decode.h"
 #include "engine/film/image_io.h"
 
@@ -38,9 +37,8 @@ void send(const PipeEnd& pipe, const Answer& answer, std::span<const std::byte> 
     if (pipe.write(std::as_bytes(std::span(&answer, 1)))) pipe.write(rest);
 }
 
-void decode_and_send(const std::filesystem::path& path, const PipeEnd& pipe) {
-    OIIO::attribute("threads", 1);       // each thread would count as much memory
-    OIIO::attribute("exr_threads", -1);  // OpenEXR's own: none
+void decode_and_send(const ImageCodecs& codecs, const std::filesystem::path& path, const PipeEnd& pipe) {
+    codecs.use_one_thread();
     limit_process(base_bytes, base_seconds);
     try {
         const Image image = decode(path, [](std::size_t values) {
@@ -83,9 +81,12 @@ Received receive(const PipeEnd& pipe) {
 }  // namespace
 
 Image read_untrusted_image(const std::filesystem::path& path) try {
+    // Before there is a child: its time and memory are for decoding.
+    const ImageCodecs& codecs = image_codecs(ExitCode::scene);
     Received received;
-    const std::string misdeed = run_in_child([&](const PipeEnd& pipe) { decode_and_send(path, pipe); },
-                                             [&](const PipeEnd& pipe) { received = receive(pipe); });
+    const std::string misdeed =
+        run_in_child([&](const PipeEnd& pipe) { decode_and_send(codecs, path, pipe); },
+                     [&](const PipeEnd& pipe) { received = receive(pipe); });
     if (!misdeed.empty()) fail_decoding(path, "its decoder " + misdeed);
     if (received.refusal) throw *received.refusal;
     if (!received.image) fail_decoding(path, "its decoder was cut short");

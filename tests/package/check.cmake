@@ -1,5 +1,5 @@
 # Installs Sahl into an empty folder, checks completion and manual page, builds the consumer against it alone,
-# runs it, checks what it prints.
+# runs it, checks what it prints, reads the image that it writes.
 # Usage: cmake -DSAHL_BUILD= -DCONSUMER= -DWORK= -DGENERATOR= -DCOMPILER= -DBUILD_TYPE= -P check.cmake
 
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/build)
@@ -24,8 +24,12 @@ execute_process(
             -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE}
     COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${WORK}/build/consumer OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK}/build/consumer WORKING_DIRECTORY ${WORK}/build OUTPUT_VARIABLE printed
+    COMMAND_ERROR_IS_FATAL ANY)
 set(expected "centre 0.5 0.25 1\ncorner 0.125 0.25 0.5\n")
 if(NOT printed STREQUAL expected)
     message(FATAL_ERROR "The consumer printed\n${printed}where this was expected:\n${expected}")
 endif()
+# Both with the library of image codecs that is installed.
+execute_process(COMMAND ${WORK}/prefix/bin/sahl compare image.png image.png WORKING_DIRECTORY ${WORK}/build
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)

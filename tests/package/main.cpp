@@ -1,4 +1,5 @@
-// Renders a glowing sphere before a coloured background with the installed engine: its two colours are exact.
+// Renders a glowing sphere before a coloured background with the installed engine, prints its two colours,
+// which are exact, and writes image.png.
 #include <iostream>
 
 #include <engine/sahl.h>
@@ -34,6 +35,7 @@ int main() try {
     const sahl::Image image = film.resolve(settings.spp);
     print_pixel("centre", image, 16, 16);
     print_pixel("corner", image, 0, 0);
+    sahl::write_image("image.png", image, {});
     return 0;
 } catch (const sahl::Error& error) {
     std::cerr << error.what() << '\n';
