@@ -32,7 +32,7 @@
 static inline uint block_flop(uint kind) {
     switch (kind) {
         case SAHL_KIND_TRIANGLE:
-            return 16u * 10u;  // vertices seen from the ray 7, edge functions 3
+            return 16u * 10u + 4u * 7u;  // vertices seen from the ray, edge functions; their sum, the depth
         case SAHL_KIND_SPHERE:
             return 4u * 25u + 6u;
         case SAHL_KIND_POLYGON:

@@ -98,7 +98,7 @@ TEST_CASE("profile: shadow rows count shadow rays, and those that reach their li
     CHECK(m.leaf_visits_per_ray == Approx(0.5));
     // Outcomes, what rays start from and bring, lamps by eight rays, light added, nodes and blocks.
     CHECK(m.bytes_per_ray == Approx((100 * 4 + 80 * 44 + 10 * 64 + 60 * 36 + 80 * 256 + 400) / 80.0));
-    CHECK(m.flop_per_ray == Approx(1000 / 80.0 + 37));
+    CHECK(m.flop_per_ray == Approx(1000 / 80.0 + 47));
 }
 
 TEST_CASE("profile: camera rays cost the same everywhere, more with several in a pixel", "[profile]") {
