@@ -80,8 +80,8 @@ TEST_CASE("profile: a row has its kernel's rays, times, speed and shares", "[pro
     CHECK(m.bytes_per_ray == Approx(32 + 20 + 5 * 256 + 30));
     CHECK(m.gb_per_s == Approx(1362 * 100 / 4e6));
     CHECK(m.bandwidth_percent == Approx(100 * 0.03405 / 10));
-    CHECK(m.flop_per_ray == Approx(200 + 37));
-    CHECK(m.fma_percent == Approx(23700 / 4e6));
+    CHECK(m.flop_per_ray == Approx(200 + 47));
+    CHECK(m.fma_percent == Approx(24700 / 4e6));
     CHECK(m.queued_to_submit_ms == Approx(0.001));
     CHECK(m.submit_to_start_ms == Approx(0.001));
     CHECK(m.gap_ms == 0);
@@ -140,8 +140,8 @@ TEST_CASE("profile: totals are the sums of rows", "[profile]") {
     CHECK(first.rays_in == 100);
     CHECK(first.rays_out == 40);
     CHECK(first.node_visits_per_ray == Approx(5.8));
-    CHECK(first.flop_per_ray == Approx((13 * 249 + 20000 + 1000 + 180 * 37) / 100.0));
-    CHECK(profile.generation_totals[1].measures.flop_per_ray == Approx((10000 + 500 + 50 * 37) / 40.0));
+    CHECK(first.flop_per_ray == Approx((13 * 249 + 20000 + 1000 + 180 * 47) / 100.0));
+    CHECK(profile.generation_totals[1].measures.flop_per_ray == Approx((10000 + 500 + 50 * 47) / 40.0));
 }
 
 TEST_CASE("profile: each repetition adds up, rows to the device's time and steps to its idle time",
