@@ -1,5 +1,7 @@
 // `sahl explain` beside the image that `sahl render` writes.
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
 #include <catch2/catch.hpp>
 
@@ -8,6 +10,8 @@
 
 namespace sahl::tests {
 namespace {
+
+namespace fs = std::filesystem;
 
 nlohmann::json explained(const std::vector<std::string>& arguments) {
     const ProcessResult result = run_sahl(arguments);
@@ -71,6 +75,15 @@ TEST_CASE("explain: neither tree nor traversal changes the rays, and memory is l
     std::vector<std::string> other = plain;
     other.insert(other.end(), {"--build-quality", "fast", "--traversal", "stream", "--max-mem", "200M"});
     CHECK(explained(other) == explained(plain));
+    // The way is taken: without its kernel there is none.
+    const TemporaryFolder folder;
+    fs::copy(fs::path(std::getenv("SAHL_SOURCE_DIR")) / "kernels", folder / "kernels");
+    fs::remove(folder / "kernels" / "intersect_stream.cl");
+    ProcessOptions without;
+    without.environment["SAHL_KERNEL_DIR"] = (folder / "kernels").string();
+    const ProcessResult missing = run_sahl(other, without);
+    CHECK(missing.status != 0);
+    CHECK(contains(missing.err, "intersect_stream.cl"));
     std::vector<std::string> tight = plain;
     tight.insert(tight.end(), {"--max-mem", "10K"});
     const ProcessResult refused = run_sahl(tight);

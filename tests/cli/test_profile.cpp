@@ -56,6 +56,11 @@ TEST_CASE("profile: what it writes is what the schema says", "[cli]") {
     CHECK(environment.at("scene_hash").get<std::string>().size() == 16);
     CHECK(reports().profile.at("calibration").at("bandwidth_gb_per_s").get<double>() > 0.1);
     CHECK(reports().profile.at("calibration").at("fma_gflop_per_s").get<double>() > 1);
+    const auto overhead = [&environment](const char* what) { return environment.at(what).get<double>(); };
+    CHECK(overhead("overhead_low_percent") <= overhead("overhead_percent"));
+    CHECK(overhead("overhead_percent") <= overhead("overhead_high_percent"));
+    CHECK(overhead("overhead_low_percent") < overhead("overhead_high_percent"));
+    CHECK(overhead("overhead_low_percent") > -100);
 }
 
 TEST_CASE("profile: every repetition's time adds up to its wall clock", "[cli]") {
