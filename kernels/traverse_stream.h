@@ -196,10 +196,12 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
     while (at_node.count + at_leaf.count != 0u) {
         const uint nodes = at_node.count;
         at_node.count = 0u;
+        // A step's outcome is looked at when all have been begun, as nothing behind waits for it then.
         for (uint k = 0; k < nodes; ++k) {
-            StreamRay* ray = at_node.rays[k];
-            visit_node(bvh, ray);
-            enlist(bvh, ray, &at_node, &at_leaf);
+            visit_node(bvh, at_node.rays[k]);
+        }
+        for (uint k = 0; k < nodes; ++k) {
+            enlist(bvh, at_node.rays[k], &at_node, &at_leaf);
         }
         const uint leaves = at_leaf.count;
         at_leaf.count = 0u;
