@@ -20,10 +20,18 @@ kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* lea
 /// Rays first.. of the batch as a list, as many as one holds.
 static inline void gather_rays(ShadowRays* list, const global float* rays, const global uint* ray_ids,
                                const global float* t_max, uint capacity, uint first, uint count) {
+    const uint end = SAHL_MIN(first + SAHL_SHADOW_RAYS, count);
     list->count = 0;
-    for (uint i = first; i < SAHL_MIN(first + SAHL_SHADOW_RAYS, count); ++i) {
-        const Ray ray = load_ray(rays, ray_ids, capacity, i);
-        add_shadow_ray(list, &ray, t_max[i]);
+    for (uint i = first; i < end; i += SAHL_LANES) {
+        RayLanes lanes;
+        lanes.origin = load_soa3v(rays, SAHL_RAY_ORIGIN, capacity, i);
+        lanes.direction = load_soa3v(rays, SAHL_RAY_DIRECTION, capacity, i);
+        lanes.primitive = load_idsv(ray_ids, SAHL_RAY_EXCLUDE, capacity, i) & SAHL_ID_MASK;
+        lanes.instance = load_idsv(ray_ids, SAHL_RAY_INSTANCE, capacity, i);
+        add_shadow_rays(list, &lanes, (1u << SAHL_MIN(end - i, SAHL_LANES)) - 1u, 0.0f);
+    }
+    for (uint k = 0; k < list->count; ++k) {
+        list->t_max[k] = t_max[first + k];
     }
 }
 
