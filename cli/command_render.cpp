@@ -18,7 +18,9 @@
 #include "cli/render_settings.h"
 #include "engine/core/log.h"
 #include "engine/core/progress.h"
+#include "engine/film/early_encoder.h"
 #include "engine/film/image_io.h"
+#include "engine/render/pixel_order.h"
 
 namespace sahl::cli {
 
@@ -93,25 +95,37 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
                       const std::string& camera, const MemoryPlan& plan, const RenderOptions& options,
                       const CommonOptions& common) {
     Rendered result{outputs, camera, settings, image_size(settings), {}, 0, 0};
+    const int samples = sample_count(settings);
     Film film(device.memory(), result.size.width, result.size.height);
+    const MemoryReservation file(device.memory(), plan.encoder, "the image's file");
+    std::optional<EarlyEncoder> early;
+    if (const Output& first = outputs.front(); can_encode_early(first.path))
+        early.emplace(film, samples, first.path, first.encoding);
     {
         Progress progress(std::cerr, progress_style(common), fmt::format("depth {}", settings.depth),
                           "samples");
         result.statistics = renderer.render(
             settings, film,
-            [&progress](std::uint64_t done, std::uint64_t all) {
+            [&](std::uint64_t done, std::uint64_t all) {
                 defer_interruption();  // there is an image to save
                 load_encoders();       // now, as loading keeps PoCL from loading kernels
+                const std::uint64_t pixels = done / static_cast<std::uint64_t>(samples);
+                if (early) early->set_finished(finished_rows(pixels, result.size.width, result.size.height));
                 progress.update(done, all);
             },
             interruption());
     }
     result.non_finite = film.non_finite_count();
     result.clamped = film.clamped_count();
-    const MemoryReservation files(device.memory(), plan.image + plan.encoder, "the image and its file");
-    const Image image = film.resolve(sample_count(settings));
-    if (is_partial(result)) save_partial(result, image, aovs, options, device.info());
-    write_files(result, image, aovs, options, device.info());
+    const MemoryReservation pixels(device.memory(), plan.image, "the image");
+    if (is_partial(result)) {
+        early.reset();
+        save_partial(result, film.resolve(samples), aovs, options, device.info());
+    }
+    const std::span<const Output> later = std::span(outputs).subspan(early ? 1 : 0);
+    if (early) early->write(metadata(result, options, device.info()));
+    early.reset();
+    if (!later.empty()) write_files(result, later, film.resolve(samples), aovs, options, device.info());
     return result;
 }
 

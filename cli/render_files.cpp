@@ -25,9 +25,9 @@ bool is_special(const fs::path& path) {
 
 }  // namespace
 
-void write_files(const Rendered& result, const Image& image, std::span<const AovImage> aovs,
-                 const RenderOptions& options, const DeviceInfo& device) {
-    for (const Output& output : result.outputs) {
+void write_files(const Rendered& result, std::span<const Output> outputs, const Image& image,
+                 std::span<const AovImage> aovs, const RenderOptions& options, const DeviceInfo& device) {
+    for (const Output& output : outputs) {
         OutputSettings encoding = output.encoding;
         encoding.metadata = metadata(result, options, device);
         const bool layers = can_hold_aovs(output.path);
@@ -48,7 +48,7 @@ void save_partial(const Rendered& result, const Image& image, std::span<const Ao
         partial.outputs = {{partial_path(output.path), output.encoding}};
         const fs::path& path = partial.outputs.front().path;
         try {
-            write_files(partial, image, aovs, options, device);
+            write_files(partial, partial.outputs, image, aovs, options, device);
             where += (saved.empty() ? "saved as " : ", ") + path.string();
             saved.push_back(path);
         } catch (const Error& error) {

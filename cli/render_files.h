@@ -7,9 +7,9 @@
 
 namespace sahl::cli {
 
-/// Writes all files of `result`; those with room for them get `aovs` too. Throws as write_image.
-void write_files(const Rendered& result, const Image& image, std::span<const AovImage> aovs,
-                 const RenderOptions& options, const DeviceInfo& device);
+/// Writes `outputs` of `result`; those with room for them get `aovs` too. Throws as write_image.
+void write_files(const Rendered& result, std::span<const Output> outputs, const Image& image,
+                 std::span<const AovImage> aovs, const RenderOptions& options, const DeviceInfo& device);
 
 /// Writes what is finished of `result` to `NAME.partial.EXT` beside each of its files, but for special
 /// ones such as /dev/null, and throws Interrupted, which names them. The files themselves stay as they

@@ -14,4 +14,10 @@ std::uint64_t monotonic_ns() {
 
 std::vector<HostEvent> HostStepLog::take() { return std::exchange(events_, {}); }
 
+std::vector<HiddenStep> HostStepLog::take_hidden() { return std::exchange(hidden_, {}); }
+
+void add_hidden_step(const char* name, std::uint64_t ns) {
+    if (HostStepLog::current != nullptr) HostStepLog::current->hidden_.push_back({name, ns});
+}
+
 }  // namespace sahl

@@ -15,6 +15,12 @@ struct HostEvent {
     const char* begins = nullptr;  ///< the step's name; nullptr: an end
 };
 
+/// What another thread did for a step meanwhile.
+struct HiddenStep {
+    const char* name = nullptr;
+    std::uint64_t ns = 0;
+};
+
 /// While it lives, the steps of the thread that made it are recorded. One at a time on a thread.
 class HostStepLog {
 public:
@@ -25,13 +31,21 @@ public:
 
     /// What was recorded since the last call, in time's order. A step may be open: it ends in the next.
     std::vector<HostEvent> take();
+    /// What add_hidden_step() was told since the last call.
+    std::vector<HiddenStep> take_hidden();
 
 private:
     friend class HostStep;
+    friend void add_hidden_step(const char* name, std::uint64_t ns);
     constinit static thread_local inline HostStepLog* current = nullptr;
 
     std::vector<HostEvent> events_;
+    std::vector<HiddenStep> hidden_;
 };
+
+/// Another thread took `ns` for the step `name`, a literal, while this one, whose log it goes to, did
+/// something else.
+void add_hidden_step(const char* name, std::uint64_t ns);
 
 /// A step from here to the end of the scope. Costs a look at a pointer where nothing is recorded.
 class HostStep {

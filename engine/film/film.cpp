@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
+#include "engine/film/resolve.h"
 
 namespace sahl {
 namespace {
@@ -58,6 +59,12 @@ void add_to(std::int64_t& sum, std::int64_t value) {
 }
 
 }  // namespace
+
+void resolve(std::span<const std::int64_t> sums, int samples, std::span<float> colors) {
+    const double divisor = one * samples;
+    std::transform(sums.begin(), sums.end(), colors.begin(),
+                   [=](std::int64_t sum) { return static_cast<float>(static_cast<double>(sum) / divisor); });
+}
 
 Film::Film(MemoryAccountant& accountant, int width, int height)
     : width_(width),
@@ -123,9 +130,7 @@ Image Film::resolve(int samples) const {
     const HostStep step("resolve");
     Image image{
         .width = width_, .height = height_, .channels = 3, .pixels = std::vector<float>(sums_.size())};
-    const double divisor = one * samples;
-    std::transform(sums_.begin(), sums_.end(), image.pixels.begin(),
-                   [=](std::int64_t sum) { return static_cast<float>(static_cast<double>(sum) / divisor); });
+    sahl::resolve(sums_, samples, image.pixels);
     return image;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,13 +21,19 @@ constexpr std::size_t channels_of(Aov aov) {
     return std::max<std::size_t>(aov_name(aov).components.size(), 1);
 }
 
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Whether the metadata of a file in this format can be changed once its pixels are encoded: PNG consists of
+/// chunks that do not know where they are.
+inline bool takes_metadata_last(const Format& format) { return std::string_view(format.name) == "png"; }
+
 /// What a file is going to hold.
 struct FileLayout {
     int width = 0;
     int height = 0;
     Encoding encoding{};
     std::vector<Aov> aovs{};  ///< in channels beside R, G and B
-    std::vector<std::pair<std::string, std::string>> metadata{};
+    Metadata metadata{};
 };
 
 /// An image file on its way into memory.
@@ -37,8 +44,9 @@ public:
     /// y on, of the layout's pixel type if that is an integer, else floats. `aovs`: of the layout, whole
     /// images. False: see error().
     virtual bool write(int y, int y_end, const void* colors, std::span<const AovImage> aovs) = 0;
-    /// After the last row. False: see error().
-    virtual bool finish() = 0;
+    /// After the last row. `metadata`: what the file is to have instead of the layout's, where the format
+    /// can. False: see error().
+    virtual bool finish(const Metadata& metadata) = 0;
     virtual std::string error() const = 0;
 };
 

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "engine/core/error.h"
-#include "engine/film/image_codecs.h"
 
 namespace sahl {
 namespace {
@@ -26,8 +25,6 @@ constexpr std::uint64_t bytes_of(PixelType type) {
     return 4;
 }
 
-constexpr int band_rows = 256;  ///< whole compression blocks of EXR (16, 32 or 256 rows) and TIFF (32)
-
 /// All channels of a pixel, uncompressed; HDR's four bytes count as three floats.
 std::uint64_t pixel_bytes(const Encoding& encoding, std::span<const Aov> aovs) {
     const std::uint64_t color = bytes_of(encoding.pixel_type);
@@ -43,15 +40,10 @@ std::uint64_t most_file_bytes(std::uint64_t raw) { return raw + raw / 2 + (std::
 /// What the colours of a band of rows are for the encoder.
 class BandColors {
 public:
-    BandColors(const Image& image, const Encoding& encoding, float exposure)
-        : image_(image), encoding_(encoding), exposure_(exposure) {}
+    BandColors(const Encoding& encoding, float exposure) : encoding_(encoding), exposure_(exposure) {}
 
     /// As FileEncoder::write takes them.
-    const void* of(int y, int y_end) {
-        const std::size_t row = 3 * static_cast<std::size_t>(image_.width);
-        const auto values =
-            std::span(image_.pixels)
-                .subspan(row * static_cast<std::size_t>(y), row * static_cast<std::size_t>(y_end - y));
+    const void* of(std::span<const float> values) {
         switch (encoding_.pixel_type) {
             case PixelType::uint8:
                 bytes_.resize(values.size());
@@ -74,8 +66,7 @@ public:
     }
 
 private:
-    const Image& image_;
-    const Encoding& encoding_;
+    Encoding encoding_;
     float exposure_;
     std::vector<std::uint8_t> bytes_{};
     std::vector<std::uint16_t> words_{};
@@ -108,30 +99,61 @@ std::uint64_t encoder_bytes(const Encoding& encoding, int width, int height, std
     return most_file_bytes(row * static_cast<std::uint64_t>(height)) + bands;
 }
 
+struct ImageEncoder::Impl {
+    Impl(fs::path file_path, const FileLayout& file_layout, float exposure)
+        : path(std::move(file_path)),
+          width(static_cast<std::size_t>(file_layout.width)),
+          colors(file_layout.encoding, exposure) {
+        // Room for the whole file, of which only what is used becomes memory: growing would copy it.
+        file.reserve(most_file_bytes(pixel_bytes(file_layout.encoding, file_layout.aovs) * width *
+                                     static_cast<std::uint64_t>(file_layout.height)));
+        std::string cause;
+        encoder = image_codecs(ExitCode::output).encode(file_layout, file, cause);
+        if (!encoder) fail(cause);
+    }
+
+    [[noreturn]] void fail(const std::string& cause) const {
+        throw Error(ExitCode::output,
+                    "cannot encode '" + path.string() + "': " + cause + "; choose another format");
+    }
+
+    fs::path path;
+    std::size_t width;
+    BandColors colors;
+    int rows = 0;  ///< that were added
+    std::vector<unsigned char> file{};
+    std::unique_ptr<FileEncoder> encoder{};
+};
+
+ImageEncoder::ImageEncoder(fs::path path, const FileLayout& layout, float exposure)
+    : impl_(std::make_unique<Impl>(std::move(path), layout, exposure)) {}
+ImageEncoder::~ImageEncoder() = default;
+
+void ImageEncoder::add(std::span<const float> colors, std::span<const AovImage> aovs) {
+    const int end = impl_->rows + static_cast<int>(colors.size() / (3 * impl_->width));
+    if (!impl_->encoder->write(impl_->rows, end, impl_->colors.of(colors), aovs))
+        impl_->fail(impl_->encoder->error());
+    impl_->rows = end;
+}
+
+std::vector<unsigned char> ImageEncoder::finish(const Metadata& metadata) {
+    if (!impl_->encoder->finish(metadata)) impl_->fail(impl_->encoder->error());
+    impl_->encoder.reset();
+    return std::move(impl_->file);
+}
+
 std::vector<unsigned char> encode(const fs::path& path, const Image& image, std::span<const AovImage> aovs,
                                   const Encoding& encoding, const OutputSettings& settings) {
     check_aovs(path, image, aovs);
-    std::vector<unsigned char> file;
     std::vector<Aov> layers;
     for (const AovImage& aov : aovs) layers.push_back(aov.aov);
-    // Room for the whole file, of which only what is used becomes memory: growing would copy it.
-    file.reserve(most_file_bytes(pixel_bytes(encoding, layers) * static_cast<std::uint64_t>(image.width) *
-                                 static_cast<std::uint64_t>(image.height)));
-    const auto fail = [&](const std::string& cause) {
-        throw Error(ExitCode::output,
-                    "cannot encode '" + path.string() + "': " + cause + "; choose another format");
-    };
-    const FileLayout layout{image.width, image.height, encoding, layers, settings.metadata};
-    std::string cause;
-    const auto encoder = image_codecs(ExitCode::output).encode(layout, file, cause);
-    if (!encoder) fail(cause);
-    BandColors colors(image, encoding, settings.exposure);
-    for (int y = 0; y < image.height; y += band_rows) {
-        const int y_end = std::min(y + band_rows, image.height);
-        if (!encoder->write(y, y_end, colors.of(y, y_end), aovs)) fail(encoder->error());
-    }
-    if (!encoder->finish()) fail(encoder->error());
-    return file;
+    ImageEncoder encoder(path, {image.width, image.height, encoding, layers, settings.metadata},
+                         settings.exposure);
+    const std::size_t band = band_rows * 3 * static_cast<std::size_t>(image.width);
+    const std::span<const float> colors(image.pixels);
+    for (std::size_t begin = 0; begin < colors.size(); begin += band)
+        encoder.add(colors.subspan(begin, std::min(band, colors.size() - begin)), aovs);
+    return encoder.finish(settings.metadata);
 }
 
 }  // namespace sahl

@@ -3,6 +3,9 @@
 #include <ctime>
 #include <utility>
 
+#include "engine/film/early_encoder.h"
+#include "engine/render/pixel_order.h"
+
 namespace sahl {
 namespace {
 
@@ -22,7 +25,8 @@ TimelineRecord TimelineRecorder::stop(Device& device, const ClockOffset& clock) 
         const HostStep step("wait");
         device.finish();
     }
-    TimelineRecord record{begin_ns_, monotonic_ns(), device.launches().take(), steps_.take()};
+    TimelineRecord record{begin_ns_, monotonic_ns(), device.launches().take(), steps_.take(),
+                          steps_.take_hidden()};
     device.launches().enable(false);
     for (LaunchRecord& launch : record.launches) {
         for (std::uint64_t* time :
@@ -43,9 +47,22 @@ RenderStatistics run_frame(Device& device, Renderer& renderer, const FrameJob& j
         const HostStep step("allocate");
         film.emplace(device.memory(), size.width, size.height);
     }
-    RenderStatistics statistics = renderer.render(settings, *film);
-    Image image = film->resolve(settings.samples ? settings.samples->count() : settings.spp);
-    write_image(job.output, image, job.encoding);
+    const int samples = settings.samples ? settings.samples->count() : settings.spp;
+    Image image;
+    RenderStatistics statistics;
+    if (can_encode_early(job.output)) {
+        EarlyEncoder encoder(*film, samples, job.output, job.encoding);
+        statistics = renderer.render(settings, *film, [&](std::uint64_t done, std::uint64_t) {
+            const HostStep step("encode");
+            encoder.set_finished(
+                finished_rows(done / static_cast<std::uint64_t>(samples), size.width, size.height));
+        });
+        encoder.write(job.encoding.metadata);
+    } else {
+        statistics = renderer.render(settings, *film);
+        image = film->resolve(samples);
+        write_image(job.output, image, job.encoding);
+    }
     const HostStep step("release");
     film.reset();
     image = {};

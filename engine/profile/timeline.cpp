@@ -77,6 +77,7 @@ TimelineSums add_up(const TimelineRecord& record) {
         step.total_ns += length;
         step.exposed_ns += length - overlap;
     }
+    for (const HiddenStep& hidden : record.hidden) sums.steps[hidden.name].total_ns += hidden.ns;
     return sums;
 }
 

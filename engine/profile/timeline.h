@@ -17,6 +17,7 @@ struct TimelineRecord {
     std::uint64_t end_ns = 0;
     std::vector<LaunchRecord> launches;  ///< in the order they ran
     std::vector<HostEvent> steps;
+    std::vector<HiddenStep> hidden{};  ///< by other threads: in the steps' totals, never exposed
 };
 
 /// A stretch of time in which one host step is the innermost.

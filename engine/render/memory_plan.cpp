@@ -67,7 +67,9 @@ std::uint64_t MemoryPlan::total() const {
     const std::uint64_t writing = image + encoder;
     // Of the image that is written while others are traced, or made ready.
     const std::uint64_t behind = writes_behind ? aovs + writing : 0;
-    const std::uint64_t tracing = std::max(ray_queues, writing);
+    // A file is encoded while its image is traced, where its format allows it, or behind.
+    const std::uint64_t tracing =
+        writes_behind ? std::max(ray_queues, writing) : std::max(ray_queues, image) + encoder;
     return behind + std::max({scene.loaded + scene.building,             // making the scene ready
                               scene.device() + aovs + aov_queues,        // tracing AOVs
                               scene.device() + aovs + film + tracing});  // tracing, writing files

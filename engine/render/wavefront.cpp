@@ -153,6 +153,8 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
             side = 1 - side;
 
             const std::array<std::uint32_t, 3> totals = wait_for(std::move(results.totals));
+            // The film has the last wave now, and no kernel runs that an error here would take memory from.
+            if (progress && batch.generation == 0 && done > checkpoints.first_sample) progress(done, samples);
             GenerationCounts& counts = statistics.generations[batch.generation];
             counts.rays += batch.count;
             counts.shadow_rays += totals[1] | std::uint64_t{totals[2]} << 32U;
@@ -167,15 +169,13 @@ RenderStatistics trace_waves(Wavefront& wavefront, const device::CameraConstants
                 free_slots.push_back(batch.slot);
             }
         }
-        if (progress) {
-            progress(done + wave.count, samples);
-        }
         if (checkpoints.due && checkpoints.due()) {
             add_to_film(pending, queues.capacity, film);
             checkpoints.save(done + wave.count);
         }
     }
     add_to_film(pending, queues.capacity, film);
+    if (progress) progress(samples, samples);
     statistics.finished_pixels = samples / wave.samples;
     statistics.seconds = seconds_since(start);
     return statistics;

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/oracle/build_scene.h"
+#include "engine/render/pixel_order.h"
 #include "tests/render/rendered.h"
 
 namespace sahl::tests {
@@ -132,6 +133,24 @@ TEST_CASE("render: progress is told to its end", "[render]") {
     });
     CHECK(rising);
     CHECK(last == 768);
+}
+
+TEST_CASE("render: rows are final once progress says that their pixels are", "[render]") {
+    Renderer renderer(test_device(), branching_scene());
+    RenderSettings settings = square_settings(43, 3);
+    settings.spp = 2;
+    settings.ray_budget = 256;
+    Film film(test_device().memory(), 43, 43);
+    std::vector<std::int64_t> first_seen;
+    int bands = 0;
+    renderer.render(settings, film, [&](std::uint64_t done, std::uint64_t) {
+        const auto final_sums = 3 * 43 * static_cast<std::size_t>(finished_rows(done / 2, 43, 43));
+        if (final_sums > first_seen.size()) ++bands;
+        const auto sums = film.sums().subspan(first_seen.size(), final_sums - first_seen.size());
+        first_seen.insert(first_seen.end(), sums.begin(), sums.end());
+    });
+    CHECK(bands == 6);  // strips of 8 rows, the last one of 3
+    CHECK(std::equal(first_seen.begin(), first_seen.end(), film.sums().begin(), film.sums().end()));
 }
 
 /// White to the left of, or above, a slightly slanted line: each pixel row or column is cut at

@@ -73,7 +73,9 @@ TEST_CASE("stop: after some waves their pixels are finished, those that they sha
             if (done == waves * settings.ray_budget) stop.request_stop();
         };
         const Rendered part = render_until(renderer, settings, after_waves, stop.get_token());
-        CHECK(part.statistics.finished_pixels == waves * settings.ray_budget / 3);
+        // The next wave is on its way by then, and finished where its first generation has no children.
+        CHECK(part.statistics.finished_pixels >= waves * settings.ray_budget / 3);
+        CHECK(part.statistics.finished_pixels <= (waves + 1) * settings.ray_budget / 3);
         check_part(part, whole);
     }
 }

@@ -52,6 +52,18 @@ TEST_CASE("timeline: a step within another has its time alone", "[profile]") {
     CHECK(sums.unattributed_ns == 30);
 }
 
+TEST_CASE("timeline: what another thread does is in a step's total and never exposed", "[profile]") {
+    HostStepLog log;
+    add_hidden_step("encode", 70);
+    const TimelineRecord record{0, 100, {launch(0, 80)}, {{85, "encode"}, {95, nullptr}}, log.take_hidden()};
+    CHECK(log.take_hidden().empty());
+    const TimelineSums sums = add_up(record);
+    check_adds_up(record, sums);
+    CHECK(sums.steps.at("encode").total_ns == 80);
+    CHECK(sums.steps.at("encode").calls == 1);
+    CHECK(exposed(sums, "encode") == 10);
+}
+
 TEST_CASE("timeline: what reaches outside of it is cut, what overlaps counts once", "[profile]") {
     const TimelineRecord record{50,
                                 100,
