@@ -224,6 +224,7 @@ private:
             task.image = film.resolve(settings.spp);
         }
         add_metadata(job, result, task);
+        wait_for_encoders();  // this image shall not fail for what the next one does
         const GenerationCounts rays = total_rays(result.statistics);
         const Json message{{"rendered", task.job},
                            {"seconds", result.statistics.seconds},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -113,6 +114,7 @@ struct ImageEncoder::Impl {
     }
 
     [[noreturn]] void fail(const std::string& cause) const {
+        if (cause.find("bad_alloc") != std::string::npos) throw std::bad_alloc();  // caught on its way
         throw Error(ExitCode::output,
                     "cannot encode '" + path.string() + "': " + cause + "; choose another format");
     }

@@ -25,10 +25,11 @@ void check_output(const fs::path& path, const OutputSettings& settings) {
 }
 
 void load_encoders() {
-    static const std::shared_future<void> loading =
-        std::async(std::launch::async, [] { image_codecs(ExitCode::output); });
+    static const std::shared_future<void> loading = std::async(std::launch::async, wait_for_encoders);
     if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) loading.get();
 }
+
+void wait_for_encoders() { image_codecs(ExitCode::output); }
 
 std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings, int width, int height,
                             std::span<const Aov> aovs) {

@@ -64,6 +64,9 @@ void check_output_format(const std::filesystem::path& path, const OutputSettings
 /// be loaded.
 void load_encoders();
 
+/// Returns when it is loaded: beside work that takes all memory it could not be. Throws as load_encoders.
+void wait_for_encoders();
+
 /// What write_image takes of memory beside the image and the AOVs, at most: the file and bands of rows
 /// on their way into it. Throws as check_output does for what the format cannot hold.
 std::uint64_t encoder_bytes(const std::filesystem::path& path, const OutputSettings& settings, int width,
