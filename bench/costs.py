@@ -35,9 +35,8 @@ SHAPES = {
 AWAY = "none: the root"
 REFERENCE_BYTES = 4  # to the block, in its node
 LINE_BYTES = 64
-# Kernels that no tree and no material decides the work of: declared are their operations and bytes but for what a
-# work-item has once.
-COUNTED_WHOLE = {"generate": ("flop", "bytes"), "count_children": ("bytes",), "sum_children": ("bytes",), "compact": ("bytes",)}
+# What is declared in full, but for what a work-item or a group of rays has once.
+COUNTED_WHOLE = {"generate": ("flop", "bytes"), "shade": ("flop",), "count_children": ("bytes",), "sum_children": ("bytes",), "compact": ("bytes",)}
 NEARLY = 0.01
 
 

@@ -7,6 +7,7 @@
 #include "kernels/light.h"
 #include "kernels/material.h"
 #include "kernels/ray_batch.h"
+#include "kernels/shade_flop.h"
 #include "kernels/surface.h"
 #include "kernels/texture.h"
 
@@ -39,6 +40,8 @@ static inline intv shade_lights(const ShadeWork* work, uint i, const global Devi
     intv shadow_rays = (intv)(0);
     for (uint l = 0; l < work->scene->light_count; ++l) {
         const global DeviceLight* light = work->lights + l;
+        SAHL_COUNT_LANES(&work->shapes,
+                         light_flop(light, material, lane_bits(nonzerov(colors->specular)) != 0u));
         floatv3 to_light = vectors_to_light(light, position);
         floatv distance = sqrt(dotv(to_light, to_light));
         floatv3 wi = div(to_light, distance);
@@ -87,6 +90,7 @@ static inline floatv3 attenuated_weights(const ShadeWork* work, floatv3 weight, 
                                          floatv distance) {
     const intv attenuated = (start & SAHL_RAY_ATTENUATED) != 0u;
     for (uint rest = lane_bits(attenuated); rest != 0u; rest &= rest - 1u) {
+        SAHL_COUNT_LANES(&work->shapes, SAHL_FALLOFF_FLOP);
         const uint lane = lowest_lane(rest);
         const uint on = ((const uint*)&start)[lane] & SAHL_ID_MASK;
         const floatv falloff =
@@ -112,11 +116,13 @@ SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
         weight,
         same3((float3)(work->scene->background[0], work->scene->background[1], work->scene->background[2])));
     vstorev(pixel, work->contribution_pixels + i);
+    SAHL_COUNT_LANES(&work->shapes, SAHL_BACKGROUND_FLOP);
     if (lane_bits(hit) == 0u) {
         store_soa3v(work->contributions, 0u, capacity, i, background);
         vstorev((uintv)(0u), work->outcomes + i);
         return;
     }
+    SAHL_COUNT_LANES(&work->shapes, SAHL_HIT_FLOP);
     const uintv primitive = borrowed(hit, hit_primitive);
     const realv3 d = load_soa3v_real(work->rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
     const realv3 origin = load_soa3v_real(work->rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
@@ -136,6 +142,7 @@ SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
         const intv lanes = hit & (surfaces.material == material_id);
         const bool first = rest == lane_bits(hit);
         rest &= ~lane_bits(lanes);
+        SAHL_COUNT_LANES(&work->shapes, SAHL_EMISSION_FLOP);
         const realv3 ns = material->flags & SAHL_MATERIAL_TWO_SIDED ? facing : surfaces.ns;
         const SurfaceColors colors =
             surface_colors(&work->shapes, material, work->textures, &surfaces, primitive);
@@ -144,6 +151,7 @@ SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
                                             roundv(negated(d)), weight, lanes, first);
         if (work->spawn) {
             const Scattering s = scatter(material, colors.reflection, &surfaces, ns, facing, d);
+            SAHL_COUNT_LANES(&work->shapes, scattering_flop(material, lane_bits(nonzerov(s.kr)) != 0u));
             sent.reflected = where(lanes, s.reflected, sent.reflected);
             sent.transmitted = where(lanes, s.transmitted, sent.transmitted);
             sent.kr = where(lanes, s.kr, sent.kr);
@@ -159,11 +167,13 @@ SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
     store_soa3v(work->shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
     const intv reflects = hit & nonzerov(sent.kr), transmits = hit & nonzerov(sent.kt);
     if (lane_bits(reflects) != 0u) {
+        SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
         store_rays(work->children, work->child_ids, capacity, i,
                    offset_origins(position, offset, roundv(sent.reflected)), surfaces.position,
                    sent.reflected, reflected_start, instance, mul(weight, sent.kr), pixel);
     }
     if (lane_bits(transmits) != 0u) {
+        SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
         store_rays(work->children + (size_t)SAHL_RAY_FLOATS * capacity,
                    work->child_ids + (size_t)SAHL_RAY_UINTS * capacity, capacity, i,
                    offset_origins(position, offset, roundv(sent.transmitted)), surfaces.position,
@@ -181,8 +191,8 @@ kernel void shade(const global DevicePrimitive* primitives, const global float* 
                   const global float* hits, const global uint* hit_ids, global float* contributions,
                   global uint* contribution_pixels, global float* shadow_surfaces, global float* shadow_light,
                   global float* children, global uint* child_ids, global uint* outcomes, const uint capacity,
-                  const uint count, const uint spawn) {
-    const ShadeWork work = {{primitives, shape_data, instances},
+                  const uint count, const uint spawn SAHL_COUNTS_PARAMETER) {
+    const ShadeWork work = {{primitives, shape_data, instances SAHL_COUNTS_AT(get_global_id(0))},
                             materials,
                             textures,
                             lights,

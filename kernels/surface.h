@@ -8,12 +8,16 @@
 
 #include "kernels/device_types.h"
 #include "kernels/lanes.h"
+#include "kernels/shade_flop.h"
 
 /// What is known of all surfaces.
 typedef struct {
     const global DevicePrimitive* primitives;
     const global float* shape_data;
     const global DeviceInstance* instances;
+#ifdef SAHL_COUNT_VISITS
+    global ulong* counts;  // of the work-item
+#endif
 } Shapes;
 
 typedef struct {
@@ -266,6 +270,7 @@ static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, 
         const uintv at = borrowed(these, data);
         const LanePlaces vertices = places(shapes->shape_data, at);
         const LanePlaces normals = places(shapes->shape_data, smooth ? at + 9u : at);
+        SAHL_COUNT_LANES(shapes, lane_bits(smooth) != 0u ? SAHL_SMOOTH_FLOP : 0u);
         s = triangle_surfaces(&vertices, &normals, smooth, origin, direction, u, v);
         others &= ~these;
     }
@@ -289,6 +294,7 @@ static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, 
         s = where_surfaces(others, object_surfaces(kind, present, &at, &slopes, origin, direction, t_real),
                            s);
     }
+    SAHL_COUNT_LANES(shapes, surface_flop(present));
     s.material = SAHL_OF_PRIMITIVES(material);
 #undef SAHL_OF_PRIMITIVES
     return s;
@@ -304,6 +310,7 @@ static inline Surfaces surfaces_at(const Shapes* shapes, intv hit, uintv instanc
     if (lane_bits(placed) != 0u) {
         rows = places((const global float*)shapes->instances,
                       (borrowed(placed, instance) - 1u) * (uint)(sizeof(DeviceInstance) / sizeof(float)));
+        SAHL_COUNT_LANES(shapes, SAHL_PLACED_FLOP);
         o = where(placed, group_from_world_points(&rows, origin), origin);
         d = where(placed, group_from_world_vectors(&rows, direction), direction);
     }

@@ -113,6 +113,7 @@ static inline floatv3 textured(floatv3 color, const global DeviceTexture* textur
     if (texture == SAHL_NO_TEXTURE) {
         return color;
     }
+    SAHL_COUNT_LANES(shapes, texture_flop(textures + texture));
     const bool in_uv = textures[texture].space == SAHL_TEXTURE_UV;
     return mul(color, texture_colors(textures + texture,
                                      in_uv ? surface_uvs(shapes, surfaces, primitive) : surfaces->position));

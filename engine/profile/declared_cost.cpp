@@ -64,13 +64,13 @@ DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work) 
         return {work.rays * (traced_bytes + hit_bytes) + visited_bytes(work.visits.intersect),
                 work.rays * ray_flop + work.visits.intersect.flop};
     }
-    if (kernel == "shade") return {shade_bytes(work)};
+    if (kernel == "shade") return {shade_bytes(work), work.visits.shade.flop};
     if (kernel == "shadow")
         return {shadow_bytes(work), work.shadow_rays * ray_flop + work.visits.shadow.flop};
     if (kernel == "count_children") return {work.rays * word + blocks * 3 * word, 0};
     if (kernel == "sum_children") return {blocks * 5 * word + 3 * word, 0};
     if (kernel == "compact") return {work.rays * word + blocks * 2 * word + work.children * 2 * ray_bytes, 0};
-    return {0};
+    return {};
 }
 
 }  // namespace sahl

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "engine/render/visits.h"
@@ -20,8 +19,8 @@ struct GenerationWork {
 };
 
 struct DeclaredCost {
-    std::uint64_t bytes = 0;              ///< loaded and stored, as if there were no cache
-    std::optional<std::uint64_t> flop{};  ///< nothing: not declared
+    std::uint64_t bytes = 0;  ///< loaded and stored, as if there were no cache
+    std::uint64_t flop = 0;   ///< floating-point operations, see kernels/count_visits.h
 };
 
 /// Of `kernel` ("intersect", without the way of traversal) over the rays of one generation.

@@ -32,19 +32,20 @@ std::string traversing(const char* kernel, Traversal traversal) {
     return fmt::format("{}_{}", kernel, name_of(traversal));
 }
 
-/// Launches a kernel that traces rays; counting ones add up what they visit, by ray or by work-item.
+/// Launches a kernel; counting ones add up what they do, by ray or by work-item.
 template <class... Arguments>
-void launch_traversal(Wavefront& wavefront, Kernel& kernel, const Launch& launch,
-                      KernelVisits GenerationVisits::*sums, const Arguments&... arguments) {
+void launch_counted(Wavefront& wavefront, Kernel& kernel, const Launch& launch, bool by_ray,
+                    KernelVisits GenerationVisits::*sums, const Arguments&... arguments) {
     if (wavefront.visits == nullptr) {
         kernel.launch(launch, arguments...);
         return;
     }
     kernel.launch(launch, arguments..., wavefront.visits->next());
     GenerationVisits& generation = wavefront.visits->generations[launch.generation];
-    const bool by_ray = wavefront.kernels.traversal == Traversal::scalar;
     wavefront.visits->add_to(generation.*sums, by_ray ? launch.items : launch.work_items, generation.lit);
 }
+
+bool counts_by_ray(const Wavefront& wavefront) { return wavefront.kernels.traversal == Traversal::scalar; }
 
 /// Adds what the last launch counted to its rays' pixels. `rays`: that were traced for each of the batch.
 void add_to_pixels(Wavefront& wavefront, const WaitingBatch& in_work, std::span<const std::uint32_t> rays) {
@@ -103,11 +104,12 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    launch_traversal(wavefront, wavefront.kernels.intersect,
-                     per_traced_ray(wavefront, in_work, wavefront.device.rays_per_item(), SAHL_PACKET_RAYS,
-                                    SAHL_STREAM_RAYS),
-                     &GenerationVisits::intersect, scene.nodes, scene.leaves, scene.outlines, scene.instances,
-                     scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids, q.capacity, in_work.count);
+    launch_counted(wavefront, wavefront.kernels.intersect,
+                   per_traced_ray(wavefront, in_work, wavefront.device.rays_per_item(), SAHL_PACKET_RAYS,
+                                  SAHL_STREAM_RAYS),
+                   counts_by_ray(wavefront), &GenerationVisits::intersect, scene.nodes, scene.leaves,
+                   scene.outlines, scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids,
+                   q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
         wavefront.visits->generations[in_work.generation].hits += count_hits(q, in_work.count);
         add_to_pixels(wavefront, in_work, std::vector<std::uint32_t>(in_work.count, 1));
@@ -118,22 +120,24 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    wavefront.kernels.shade.launch(
-        per_ray(rays_in_groups(wavefront.device), in_work.generation, in_work.count), scene.primitives,
-        scene.shape_data, scene.instances, scene.materials, scene.textures, scene.lights, scene.constants,
-        batch.rays, batch.ids, q.hits, q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light,
-        q.children, q.child_ids, q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
+    launch_counted(wavefront, wavefront.kernels.shade,
+                   per_ray(rays_in_groups(wavefront.device), in_work.generation, in_work.count), false,
+                   &GenerationVisits::shade, scene.primitives, scene.shape_data, scene.instances,
+                   scene.materials, scene.textures, scene.lights, scene.constants, batch.rays, batch.ids,
+                   q.hits, q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light, q.children,
+                   q.child_ids, q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
 }
 
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    launch_traversal(wavefront, wavefront.kernels.shadow,
-                     per_traced_ray(wavefront, in_work, rays_in_groups(wavefront.device), SAHL_SHADOW_RAYS,
-                                    SAHL_SHADOW_RAYS),
-                     &GenerationVisits::shadow, scene.nodes, scene.leaves, scene.outlines, scene.instances,
-                     scene.primitives, scene.materials, scene.lights, scene.constants, q.hit_ids,
-                     q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity, in_work.count);
+    launch_counted(wavefront, wavefront.kernels.shadow,
+                   per_traced_ray(wavefront, in_work, rays_in_groups(wavefront.device), SAHL_SHADOW_RAYS,
+                                  SAHL_SHADOW_RAYS),
+                   counts_by_ray(wavefront), &GenerationVisits::shadow, scene.nodes, scene.leaves,
+                   scene.outlines, scene.instances, scene.primitives, scene.materials, scene.lights,
+                   scene.constants, q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
+                   q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
         add_to_pixels(wavefront, in_work, shadow_rays_of(q, in_work.count));
     }

@@ -19,6 +19,7 @@ struct GenerationVisits {
     KernelVisits shadow;
     std::uint64_t hits = 0;  ///< rays that meet something
     std::uint64_t lit = 0;   ///< shadow rays that reach their light
+    KernelVisits shade{};    ///< flop alone: shading visits no tree
 };
 
 /// Sums by pixel, over its samples, generations and lights, in the order of a film; 2^32 - 1 stands for

@@ -46,6 +46,9 @@ TEST_CASE("visits: of one sphere packets open the root once for 128 rays", "[ren
     CHECK(visits[0].intersect.leaves == visits[0].intersect.nodes);
     CHECK(visits[0].intersect.leaf_bytes == visits[0].intersect.leaves * sizeof(device::SphereBlock));
     CHECK(visits[0].intersect.flop > rays * 6);
+    // Additions, multiplications and divisions of shading: the background; the ray in full, position, offset
+    // and side; the sphere; what it emits; the lamp's direction, its light, and the cosine of it.
+    CHECK(visits[0].shade.flop == rays * (3 + 27 + 55 + 6 + 33));
 }
 
 TEST_CASE("visits: rays that miss everything open the root alone", "[render]") {
@@ -57,6 +60,7 @@ TEST_CASE("visits: rays that miss everything open the root alone", "[render]") {
     CHECK(visits[0].intersect.nodes >= 64 * 64 / 128);
     CHECK(visits[0].intersect.leaves == 0);
     CHECK(visits[0].shadow.nodes == 0);
+    CHECK(visits[0].shade.flop == 64 * 64 * 3);
 }
 
 TEST_CASE("visits: a pixel of one sphere costs a ray and a shadow ray, each the root", "[render]") {
