@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "engine/core/atomic_file.h"
+#include "engine/core/background.h"
 #include "engine/core/host_steps.h"
 #include "engine/film/image_encode.h"
 #include "engine/film/resolve.h"
@@ -31,20 +32,22 @@ struct EarlyEncoder::Impl {
           layout{film.width(), film.height(), encoding_of(file, output), {}, output.metadata},
           exposure(output.exposure) {}
 
-    /// The rows that are finished, once those from `begin` on are worth a band; 0 when it is to stop.
-    int wait_for_rows(int begin, const std::stop_token& stop) {
+    /// The rows that are finished, once those that are not encoded yet are worth a band.
+    int wait_for_rows(const std::stop_token& stop) {
         std::unique_lock lock(mutex);
-        wanted_rows = std::min(begin + least_rows, layout.height);
-        const auto is_band = [&] { return rows >= wanted_rows; };
-        return changed.wait(lock, stop, is_band) ? rows : 0;
+        wanted_rows = std::min(encoded_rows + least_rows, layout.height);
+        changed.wait(lock, stop, [&] { return rows >= wanted_rows; });
+        return rows;
     }
 
+    /// Until all rows are encoded or it is to stop.
     void encode_rows(const std::stop_token& stop) {
         const std::size_t row = 3 * static_cast<std::size_t>(layout.width);
         std::vector<float> colors;
-        for (int begin = 0; begin < layout.height;) {
-            const int end = std::min(wait_for_rows(begin, stop), begin + band_rows);
-            if (end == 0) return;
+        while (encoded_rows < layout.height) {
+            const int begin = encoded_rows;
+            const int end = std::min(wait_for_rows(stop), begin + band_rows);
+            if (stop.stop_requested()) return;
             const std::uint64_t start = monotonic_ns();
             // Not before rows are finished: loading the codecs would keep PoCL from loading kernels.
             if (!encoder) encoder.emplace(path, layout, exposure);
@@ -52,13 +55,14 @@ struct EarlyEncoder::Impl {
             resolve(film.sums().subspan(row * static_cast<std::size_t>(begin), colors.size()), samples,
                     colors);
             encoder->add(colors, {});
-            begin = end;
+            encoded_rows = end;
             const std::lock_guard lock(mutex);
             hidden_ns += std::min(monotonic_ns(), wait_ns) - std::min(start, wait_ns);
         }
     }
 
     void run(const std::stop_token& stop) {
+        run_in_background();  // no kernel shall wait for it
         try {
             encode_rows(stop);
         } catch (...) {
@@ -73,6 +77,7 @@ struct EarlyEncoder::Impl {
     FileLayout layout;
     float exposure;
     std::optional<ImageEncoder> encoder{};  ///< the thread's, until it ends
+    int encoded_rows = 0;                   ///< the thread's, too
 
     std::mutex mutex{};
     std::condition_variable_any changed{};
@@ -110,8 +115,11 @@ void EarlyEncoder::write(const Metadata& metadata) {
             impl_->wait_ns = monotonic_ns();
         }
         set_finished(impl_->layout.height);
+        // What is left is done here, as fast as can be.
+        impl_->thread.request_stop();
         impl_->thread.join();
         if (impl_->failure) std::rethrow_exception(impl_->failure);
+        impl_->encode_rows({});
         file = impl_->encoder->finish(metadata);
         add_hidden_step("encode", impl_->hidden_ns);
     }
