@@ -5,7 +5,6 @@
 #include <span>
 
 #include "engine/core/atomic_file.h"
-#include "engine/core/background.h"
 #include "engine/core/host_steps.h"
 #include "engine/film/image_codecs.h"
 #include "engine/film/image_decode.h"
@@ -26,10 +25,7 @@ void check_output(const fs::path& path, const OutputSettings& settings) {
 }
 
 void load_encoders() {
-    static const std::shared_future<void> loading = std::async(std::launch::async, [] {
-        run_in_background();
-        wait_for_encoders();
-    });
+    static const std::shared_future<void> loading = std::async(std::launch::async, wait_for_encoders);
     if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) loading.get();
 }
 

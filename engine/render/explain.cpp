@@ -67,7 +67,7 @@ public:
         launch_shadow(wavefront_, in_work.batch, out);
         note_contributions(in_work, read_all<float>(out.light));
         launch_count_children(wavefront_, in_work.batch);
-        launch_sum_children(wavefront_, in_work.batch);
+        launch_sum_children(wavefront_, in_work.batch, out);
         if (spawn) launch_compact(wavefront_, in_work.batch, next, waiting);
     }
 

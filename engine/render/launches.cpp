@@ -150,11 +150,11 @@ void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work) {
                                             compact_blocks(in_work.count));
 }
 
-void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work) {
+void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     RayQueues& q = wavefront.queues;
     const std::uint32_t blocks = compact_blocks(in_work.count);
     wavefront.kernels.sum_children.launch({1, in_work.generation, blocks, blocks}, q.block_counts,
-                                          q.block_shadow_rays, q.totals, blocks);
+                                          q.block_shadow_rays, out.totals, blocks);
 }
 
 void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting) {

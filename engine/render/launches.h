@@ -67,8 +67,8 @@ void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributi
 /// The children and shadow rays of each block of parents.
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work);
 
-/// The places of each block's children, and the totals.
-void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work);
+/// The places of each block's children, and the totals into `out`.
+void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out);
 
 /// The children into `next`, which may be the batch in work (children are staged), and what it cannot
 /// hold into `waiting`.

@@ -47,13 +47,13 @@ std::uint32_t ray_capacity(std::uint32_t rays) {
 
 std::size_t ray_queue_bytes(std::uint32_t rays, int depth, std::uint32_t light_count) {
     const Sizes size(ray_capacity(rays), light_count);
-    const auto batches = static_cast<std::size_t>(depth) + 1;
+    const auto batches = waves_in_flight * (static_cast<std::size_t>(depth) + 1);
     const auto footprint = Buffer::footprint;
     return batches * (footprint(size.rays) + footprint(size.ids)) + footprint(2 * size.rays) +
            footprint(2 * size.ids) + footprint(size.hits) + footprint(size.hit_ids) +
            footprint(size.shadow_surfaces) + footprint(size.shadow_light) + footprint(size.outcomes) +
-           footprint(size.block_counts) + footprint(size.block_shadow_rays) + footprint(size.totals) +
-           2 * (footprint(size.light) + footprint(size.pixels));
+           footprint(size.block_counts) + footprint(size.block_shadow_rays) +
+           2 * waves_in_flight * (footprint(size.light) + footprint(size.pixels) + footprint(size.totals));
 }
 
 std::uint32_t most_rays(const Device& device, std::uint32_t light_count) {
@@ -67,7 +67,7 @@ std::uint32_t most_rays(const Device& device, std::uint32_t light_count) {
 RayQueues::RayQueues(Device& device, std::uint32_t rays, int depth, std::uint32_t light_count)
     : capacity(ray_capacity(rays)) {
     const Sizes size(capacity, light_count);
-    for (int i = 0; i <= depth; ++i) {
+    for (std::size_t i = 0; i < waves_in_flight * (static_cast<std::size_t>(depth) + 1); ++i) {
         const std::string name = "ray batch " + std::to_string(i);
         batches.push_back({Buffer(device, size.rays, name), Buffer(device, size.ids, name + " ids")});
     }
@@ -80,10 +80,10 @@ RayQueues::RayQueues(Device& device, std::uint32_t rays, int depth, std::uint32_
     outcomes = Buffer(device, size.outcomes, "outcomes");
     block_counts = Buffer(device, size.block_counts, "block counts");
     block_shadow_rays = Buffer(device, size.block_shadow_rays, "block shadow rays");
-    totals = Buffer(device, size.totals, "totals");
     for (Contributions& c : contributions) {
         c.light = Buffer(device, size.light, "contributions");
         c.pixels = Buffer(device, size.pixels, "contribution pixels");
+        c.totals = Buffer(device, size.totals, "totals");
     }
 }
 

@@ -16,11 +16,16 @@ struct RayBatch {
     Buffer ids;
 };
 
-/// Light to add to the film: three float arrays and the pixels they go to.
+/// What a generation leaves for the host.
 struct Contributions {
-    Buffer light;
-    Buffer pixels;
+    Buffer light;   ///< to add to the film: three float arrays
+    Buffer pixels;  ///< that it goes to
+    Buffer totals;  ///< see sum_children
 };
+
+/// Waves whose ray trees are traced in turn, so that the device has work of one while the host looks at what
+/// has become of another.
+constexpr std::uint32_t waves_in_flight = 2;
 
 /// RayQueues::capacity for batches of `rays` rays: whole cache lines, and no multiple of 4 KB, at which
 /// the arrays of a batch would compete for the same sets of the cache.
@@ -37,7 +42,8 @@ struct RayQueues {
     RayQueues(Device& device, std::uint32_t rays, int depth, std::uint32_t light_count);
 
     std::uint32_t capacity;
-    /// The batch in work and those that wait: a generation leaves at most one waiting, so depth + 1.
+    /// Of each wave in flight the batch in work and those that wait: a generation leaves at most one waiting,
+    /// so depth + 1 a wave, one wave's after the other's.
     std::vector<RayBatch> batches;
     Buffer hits;
     Buffer hit_ids;
@@ -48,9 +54,8 @@ struct RayQueues {
     Buffer outcomes;
     Buffer block_counts;
     Buffer block_shadow_rays;
-    Buffer totals;
-    /// Two, so that the host adds one to the film while the device fills the other.
-    Contributions contributions[2];
+    /// Two a wave in flight, so that the host adds one to the film while the device fills the other.
+    Contributions contributions[2 * waves_in_flight];
 };
 
 }  // namespace sahl

@@ -68,7 +68,7 @@ bool test_count_children(KernelTest& test, Wavefront& wavefront, const Generatio
 
 bool test_sum_children(KernelTest& test, Wavefront& wavefront, const Generation& generation) {
     RayQueues& queues = wavefront.queues;
-    launch_sum_children(wavefront, generation.in_work);
+    launch_sum_children(wavefront, generation.in_work, wavefront.queues.contributions[0]);
     const std::vector<Block> blocks = count_blocks(queues, generation.in_work.count);
     std::vector<std::uint32_t> places;
     std::uint32_t children = 0;
@@ -82,7 +82,7 @@ bool test_sum_children(KernelTest& test, Wavefront& wavefront, const Generation&
     for (const Block& block : blocks) shadow_rays += block.shadow_rays;
     const std::uint32_t sums[] = {children, shadow_rays, 0};
     const Words found_places(queues.block_counts, places.size(), 1);
-    const Words totals(queues.totals, 3, 1);
+    const Words totals(queues.contributions[0].totals, 3, 1);
     return check_exact(
                test, "place of the children of block", places.size(),
                [&](std::size_t i) { return places[i]; },

@@ -1,5 +1,6 @@
 // Rendering that is stopped: finished pixels stay as they would have been, of the others nothing does.
 #include <chrono>
+#include <stdexcept>
 #include <stop_token>
 #include <thread>
 
@@ -69,13 +70,15 @@ TEST_CASE("stop: after some waves their pixels are finished, those that they sha
     for (const std::uint64_t waves : {1, 2, 20}) {
         INFO(waves << " waves");
         std::stop_source stop;
+        std::uint64_t finished = 0;  // in whole waves, of which several may end at once
         const auto after_waves = [&](std::uint64_t done, std::uint64_t) {
-            if (done == waves * settings.ray_budget) stop.request_stop();
+            if (done < waves * settings.ray_budget || stop.stop_requested()) return;
+            finished = done;
+            stop.request_stop();
         };
         const Rendered part = render_until(renderer, settings, after_waves, stop.get_token());
-        // The next wave is on its way by then, and finished where its first generation has no children.
-        CHECK(part.statistics.finished_pixels >= waves * settings.ray_budget / 3);
-        CHECK(part.statistics.finished_pixels <= (waves + 1) * settings.ray_budget / 3);
+        CHECK(finished % settings.ray_budget == 0);
+        CHECK(part.statistics.finished_pixels == finished / 3);
         check_part(part, whole);
     }
 }
@@ -89,6 +92,14 @@ TEST_CASE("stop: a request during the last wave comes too late", "[render]") {
     const Rendered image = render_until(renderer, small_waves(), at_the_end, stop.get_token());
     CHECK(image.statistics.finished_pixels == size * size);
     CHECK(image.image.pixels == render(renderer, small_waves()).image.pixels);
+}
+
+TEST_CASE("stop: an error while other waves are on their way leaves a renderer that works", "[render]") {
+    Renderer renderer(test_device(), glass_balls());
+    const Rendered whole = render(renderer, small_waves());
+    const auto fail = [](std::uint64_t, std::uint64_t) { throw std::runtime_error("no more"); };
+    CHECK_THROWS_WITH(render_until(renderer, small_waves(), fail, {}), "no more");
+    CHECK(render(renderer, small_waves()).image.pixels == whole.image.pixels);
 }
 
 TEST_CASE("stop: within a wave, at any moment", "[render]") {
