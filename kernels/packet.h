@@ -1,5 +1,6 @@
 // Packets of 128 rays in groups of sixteen: loading and storing them, and their passes: the rays of one
 // octant and shear axis (triangle.h), for which near and far planes and the order of children are the same.
+// What is done once a packet or pass is not inlined: compilers are done sooner, and loops keep registers.
 #ifndef SAHL_PACKET_H
 #define SAHL_PACKET_H
 
@@ -37,7 +38,7 @@ static inline int16 pass_of(const RayGroup* rays) {
 }
 
 /// One bit for each pass that the groups' rays need.
-static inline uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, int16* pass_numbers) {
+SAHL_NOINLINE uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, int16* pass_numbers) {
     int16 passes = 0;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         pass_numbers[g] = -1;
@@ -54,7 +55,7 @@ static inline uint passes_of(const RayGroup* rays, const GroupHits* hits, uint g
 
 /// Sets up the rays of pass `number`: `far` where their ranges end (-inf for others), `group_far` the
 /// farthest of each group. Returns the groups that have any.
-static inline uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
+SAHL_NOINLINE uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
                               const GroupHits* hits, uint groups, const int16* pass_numbers, float16* far,
                               float16* cull_far, float* group_far) {
     const float16 infinite = INFINITY;
@@ -142,7 +143,7 @@ static inline void clear_hits(GroupHits* hits) {
 }
 
 /// Rays first.. of a batch, up to `end`.
-static inline void load_packet(Packet* packet, const global float* rays, const global uint* ray_ids,
+SAHL_NOINLINE void load_packet(Packet* packet, const global float* rays, const global uint* ray_ids,
                                uint capacity, uint first, uint end) {
     const global uint* starts = ray_ids + (size_t)SAHL_RAY_EXCLUDE * capacity;
     const global uint* instances = ray_ids + (size_t)SAHL_RAY_INSTANCE * capacity;
@@ -169,7 +170,7 @@ static inline void load_packet(Packet* packet, const global float* rays, const g
 }
 
 /// Rays first.. of a list.
-static inline void load_shadow_packet(Packet* packet, const ShadowRays* list, uint first) {
+SAHL_NOINLINE void load_shadow_packet(Packet* packet, const ShadowRays* list, uint first) {
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += 16u) {
         RayGroup* group = packet->rays[0] + g;
         GroupHits* hits = packet->hits + g;
@@ -193,7 +194,7 @@ static inline void load_shadow_packet(Packet* packet, const ShadowRays* list, ui
 }
 
 /// Hits of the rays first.. of a batch, up to `end`.
-static inline void store_packet(const Packet* packet, global float* hits, global uint* hit_ids, uint capacity,
+SAHL_NOINLINE void store_packet(const Packet* packet, global float* hits, global uint* hit_ids, uint capacity,
                                 uint first, uint end) {
     for (uint g = 0; g < SAHL_PACKET_GROUPS && first < end; ++g, first += 16u) {
         const GroupHits* group = packet->hits + g;
@@ -220,11 +221,10 @@ static inline void store_packet(const Packet* packet, global float* hits, global
 }
 
 static inline void store_occlusion(const Packet* packet, ShadowRays* list, uint first) {
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += 16u) {
-        for (uint lane = 0; lane < 16u && first + lane < list->count; ++lane) {
-            list->occlusion[first + lane] =
-                strongest_occlusion(((const uint*)&packet->hits[g].occlusion)[lane]);
-        }
+    for (uint g = 0; g < SAHL_PACKET_GROUPS && first < list->count; ++g, first += 16u) {
+        const int16 occlusion = packet->hits[g].occlusion, opaque = occlusion & (int16)((int)SAHL_HIT_OPAQUE);
+        const int16 strongest = select16(equal16(opaque, (int16)(0)), occlusion, opaque);
+        vstore16(as_uint16(strongest), 0, list->occlusion + first);
     }
 }
 

@@ -98,7 +98,7 @@ static inline uint groups_that_meet(const global BvhNode* node, uint slot, const
 }
 
 /// A leaf's one block of any kind but triangles. Returns whether a range has changed.
-static inline bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTest* test) {
+SAHL_NOINLINE bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTest* test) {
     const global uchar* block = leaf_block(bvh, child);
     switch (child_kind(child)) {
         case SAHL_KIND_SPHERE:
@@ -111,7 +111,7 @@ static inline bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTes
 }
 
 /// The rays of `groups` in the space of instance `i`'s group.
-static inline void enter_instance(const Bvh* bvh, Packet* packet, uint groups, uint i) {
+SAHL_NOINLINE void enter_instance(const Bvh* bvh, Packet* packet, uint groups, uint i) {
     const global DeviceInstance* instance = bvh->instances + i;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         if (!(groups >> g & 1u)) {
