@@ -77,7 +77,7 @@ static inline void add_light(const ShadowWork* work, uint i, float3 light) {
 }
 
 /// Gathers lamp l's shadow rays from hits first..end-1; hits[k]: the hit that ray k of the list starts at.
-static inline void gather_shadow_rays(const ShadowWork* work, uint l, uint first, uint end, ShadowRays* list,
+SAHL_NOINLINE void gather_shadow_rays(const ShadowWork* work, uint l, uint first, uint end, ShadowRays* list,
                                       uint* hits) {
     const float t_max = shadow_t_max(work->lights + l);
     list->count = 0;
@@ -95,7 +95,7 @@ static inline void gather_shadow_rays(const ShadowWork* work, uint l, uint first
 }
 
 /// Adds what the list's rays, whose occlusion is known, bring of lamp l's light.
-static inline void add_light_of_list(const Bvh* bvh, const ShadowWork* work, uint l, const ShadowRays* list,
+SAHL_NOINLINE void add_light_of_list(const Bvh* bvh, const ShadowWork* work, uint l, const ShadowRays* list,
                                      const uint* hits) {
     const float t_max = shadow_t_max(work->lights + l);
     for (uint k = 0; k < list->count; ++k) {
