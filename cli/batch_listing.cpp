@@ -18,12 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<std::string> paths_of(const BatchJob& job) {
-    std::vector<std::string> paths;
-    for (const std::filesystem::path& output : job.outputs) paths.push_back(output.string());
-    return paths;
-}
-
 /// What is asked for, in a few words.
 std::string settings_text(const BatchJob& job) {
     const ImageSettings& settings = job.settings;

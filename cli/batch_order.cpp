@@ -52,8 +52,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerSettings, device, max_memory, checkpoin
 
 namespace {
 
-using Json = nlohmann::json;
-
 /// These do not compile when there is a member that is not listed above.
 [[maybe_unused]] void all_members(const ImageSettings& i, const BatchJob& j, const Camera& c,
                                   const SceneContent& s, const DeviceOptions& d, const WorkerSettings& w) {
@@ -67,19 +65,19 @@ using Json = nlohmann::json;
 
 }  // namespace
 
-Json message_of(const WorkerSettings& settings) { return {{"settings", settings}}; }
+nlohmann::json message_of(const WorkerSettings& settings) { return {{"settings", settings}}; }
 
-WorkerSettings read_worker_settings(const Json& message) {
+WorkerSettings read_worker_settings(const nlohmann::json& message) {
     return message.at("settings").get<WorkerSettings>();
 }
 
-Json message_of(std::size_t index, bool wait, const BatchJob& job, const SceneContent* content) {
-    Json message{{"job", index}, {"wait", wait}, {"what", job}};
+nlohmann::json message_of(std::size_t index, bool wait, const BatchJob& job, const SceneContent* content) {
+    nlohmann::json message{{"job", index}, {"wait", wait}, {"what", job}};
     if (content != nullptr) message["content"] = *content;
     return message;
 }
 
-Order read_order(const Json& message, const std::shared_ptr<const SceneContent>& last) {
+Order read_order(const nlohmann::json& message, const std::shared_ptr<const SceneContent>& last) {
     Order order{message.at("job"), message.at("wait"), message.at("what").get<BatchJob>(), last};
     if (message.contains("content"))
         order.content = std::make_shared<const SceneContent>(message.at("content").get<SceneContent>());

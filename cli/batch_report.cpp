@@ -25,12 +25,6 @@ constexpr auto between_bars = std::chrono::milliseconds(100);
 constexpr auto between_lines = std::chrono::seconds(10);
 constexpr auto between_status_files = std::chrono::seconds(1);
 
-std::vector<std::string> paths_of(const BatchJob& job) {
-    std::vector<std::string> paths;
-    for (const std::filesystem::path& output : job.outputs) paths.push_back(output.string());
-    return paths;
-}
-
 std::string bar(double share, std::size_t cells) {
     const auto filled = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(cells));
     return "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "]";

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/batch/batch_job.h"
@@ -31,6 +32,13 @@ struct BatchSetup {
 
     const SceneContent& content_of(const BatchJob& job) { return contents.of(job.scene, job.parameters); }
 };
+
+/// The outputs, as texts.
+inline std::vector<std::string> paths_of(const BatchJob& job) {
+    std::vector<std::string> paths;
+    for (const std::filesystem::path& output : job.outputs) paths.push_back(output.string());
+    return paths;
+}
 
 /// Where the film of a job is kept while it is not finished.
 inline std::filesystem::path checkpoint_of(const BatchJob& job) {

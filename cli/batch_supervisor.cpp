@@ -24,7 +24,6 @@ namespace sahl::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr int most_attempts = 2;
@@ -122,7 +121,7 @@ private:
             if (!worker_->socket().receive()) return worker_ended();
             heard_ = Clock::now();
             while (worker_) {  // it may be replaced
-                const std::optional<Json> message = worker_->socket().next();
+                const std::optional<nlohmann::json> message = worker_->socket().next();
                 if (!message) break;
                 take(*message);
             }
@@ -156,7 +155,7 @@ private:
         std::erase(writing_, job);
     }
 
-    void take(const Json& message) {
+    void take(const nlohmann::json& message) {
         const auto is = [&](const char* event) { return message.contains(event); };
         const auto job_of = [&](const char* event) { return message.at(event).get<std::size_t>(); };
         if (is("progress")) {
@@ -187,7 +186,7 @@ private:
         }
     }
 
-    void rendered(std::size_t job, const Json& message) {
+    void rendered(std::size_t job, const nlohmann::json& message) {
         JobOutcome& outcome = outcomes_[job];
         outcome.state = JobState::writing;
         outcome.seconds = message.at("seconds");

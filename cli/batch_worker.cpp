@@ -25,7 +25,6 @@ namespace sahl::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto between_messages = std::chrono::milliseconds(100);
@@ -56,7 +55,7 @@ public:
 private:
     static void wait_for_settings(MessageSocket& socket, WorkerSettings& settings) {
         for (;;) {
-            if (const std::optional<Json> message = socket.next()) {
+            if (const std::optional<nlohmann::json> message = socket.next()) {
                 settings = read_worker_settings(*message);
                 return;
             }
@@ -66,7 +65,7 @@ private:
 
     void read(MessageSocket& socket) {
         do {
-            while (const std::optional<Json> message = socket.next()) {
+            while (const std::optional<nlohmann::json> message = socket.next()) {
                 const std::lock_guard lock(mutex_);
                 if (message->contains("job")) {
                     orders_.push_back(read_order(*message, content_));
@@ -226,14 +225,14 @@ private:
         add_metadata(job, result, task);
         wait_for_encoders();  // this image shall not fail for what the next one does
         const GenerationCounts rays = total_rays(result.statistics);
-        const Json message{{"rendered", task.job},
-                           {"seconds", result.statistics.seconds},
-                           {"loaded", prepared.loaded},
-                           {"built", prepared.built},
-                           {"rays", rays.rays},
-                           {"shadow_rays", rays.shadow_rays},
-                           {"non_finite", result.non_finite},
-                           {"clamped", result.clamped}};
+        const nlohmann::json message{{"rendered", task.job},
+                                     {"seconds", result.statistics.seconds},
+                                     {"loaded", prepared.loaded},
+                                     {"built", prepared.built},
+                                     {"rays", rays.rays},
+                                     {"shadow_rays", rays.shadow_rays},
+                                     {"non_finite", result.non_finite},
+                                     {"clamped", result.clamped}};
         // Said first: the next order may be on its way while this one is handed over.
         socket_.send(message);
         writer_.write(std::move(task));

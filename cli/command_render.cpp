@@ -26,10 +26,6 @@ namespace sahl::cli {
 
 namespace {
 
-int sample_count(const RenderSettings& settings) {
-    return settings.samples ? settings.samples->count() : settings.spp;
-}
-
 /// What is written for each depth, checked.
 std::vector<std::vector<Output>> plan_outputs(const RenderOptions& options, const std::vector<int>& depths) {
     std::vector<std::vector<Output>> plan;

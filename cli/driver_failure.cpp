@@ -19,8 +19,8 @@ namespace {
     "can be written and has 32 MiB free; free some space or set TMPDIR to another folder"
 
 // Ready-made, for there is a signal handler among those that need them.
-constexpr std::string_view message = "sahl: error: " SAHL_DRIVER_FAILURE "\n";
-constexpr std::string_view event =
+constexpr std::string_view failure_message = "sahl: error: " SAHL_DRIVER_FAILURE "\n";
+constexpr std::string_view failure_event =
     "{\"event\":\"error\",\"code\":4,\"message\":\"" SAHL_DRIVER_FAILURE "\"}\n";
 
 std::atomic<bool> as_event = false;
@@ -28,7 +28,7 @@ std::atomic<bool> ending = false;
 
 void write_whole(int file, std::string_view text) {
     while (!text.empty()) {
-        const ssize_t written = write(file, text.data(), text.size());
+        const ssize_t written = ::write(file, text.data(), text.size());
         if (written <= 0) return;
         text.remove_prefix(static_cast<std::size_t>(written));
     }
@@ -36,8 +36,8 @@ void write_whole(int file, std::string_view text) {
 
 /// Async-signal-safe.
 [[noreturn]] void give_up() {
-    write_whole(STDERR_FILENO, message);
-    if (as_event) write_whole(STDOUT_FILENO, event);
+    write_whole(STDERR_FILENO, failure_message);
+    if (as_event) write_whole(STDOUT_FILENO, failure_event);
     exit_at_once(static_cast<int>(ExitCode::device));
 }
 

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/render_settings.h"
 #include "cli/standard_output.h"
 
 namespace sahl::cli {
@@ -126,10 +127,6 @@ void add_tree(std::vector<Row>& rows, const ExplainedPixel& pixel,
                     distance_text(ray), color_text(ray.weight), color_text(ray.contribution),
                     lights_text(ray)});
     for (const std::uint32_t child : children[i]) add_tree(rows, pixel, children, child);
-}
-
-int sample_count(const RenderSettings& settings) {
-    return settings.samples ? settings.samples->count() : settings.spp;
 }
 
 }  // namespace

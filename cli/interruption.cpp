@@ -36,7 +36,7 @@ State& state() {
     return *instance;
 }
 
-std::string_view name_of(int signal) { return signal == SIGINT ? "SIGINT" : "SIGTERM"; }
+std::string_view signal_name(int signal) { return signal == SIGINT ? "SIGINT" : "SIGTERM"; }
 
 int exit_status(int signal) { return 128 + signal; }
 
@@ -103,7 +103,7 @@ Interrupted::Interrupted(const std::string& what, std::vector<std::filesystem::p
 
 int report(const Interrupted& interrupted) {
     const int signal = state().signal;
-    const std::string message = fmt::format("interrupted by {}: {}", name_of(signal), interrupted.what());
+    const std::string message = fmt::format("interrupted by {}: {}", signal_name(signal), interrupted.what());
     log_error(message);
     if (!state().events) return exit_status(signal);
     nlohmann::ordered_json partial = nlohmann::ordered_json::array();
@@ -111,7 +111,7 @@ int report(const Interrupted& interrupted) {
     try {
         print_event({{"event", "interrupted"},
                      {"code", exit_status(signal)},
-                     {"signal", name_of(signal)},
+                     {"signal", signal_name(signal)},
                      {"partial", partial},
                      {"message", message}});
     } catch (const Error&) {

@@ -204,7 +204,8 @@ int guarded_run(int argc, char** argv) {
 
 }  // namespace sahl::cli
 
-int main(int argc, char** argv) {
+// What is thrown while a failure is reported has nobody left to tell.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     sahl::cli::reserve_standard_streams();
     // A reader that went away and a file size limit are failed writes with a message, not a silent death.
     std::signal(SIGPIPE, SIG_IGN);

@@ -10,7 +10,7 @@ namespace sahl::cli {
 namespace {
 
 /// `text` as roff prints it: nothing is a command or turns into a typographic character.
-std::string escaped(std::string_view text) {
+std::string roff(std::string_view text) {
     std::string result;
     for (const char c : text) {
         switch (c) {
@@ -43,11 +43,11 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-std::string bold(std::string_view text) { return "\\fB" + escaped(text) + "\\fR"; }
-std::string italic(std::string_view text) { return "\\fI" + escaped(text) + "\\fR"; }
+std::string bold(std::string_view text) { return "\\fB" + roff(text) + "\\fR"; }
+std::string italic(std::string_view text) { return "\\fI" + roff(text) + "\\fR"; }
 
 std::string tagged(const std::string& tag, std::string_view text) {
-    return ".TP\n" + tag + "\n" + escaped(text) + "\n";
+    return ".TP\n" + tag + "\n" + roff(text) + "\n";
 }
 
 std::string option_entry(const CLI::Option& option) {
@@ -77,11 +77,11 @@ Footer footer_of(const CLI::App& command) {
 }
 
 std::string command_section(const CLI::App& command) {
-    std::string text = fmt::format(".SS {}\n", escaped("sahl " + name_of(command)));
+    std::string text = fmt::format(".SS {}\n", roff("sahl " + name_of(command)));
     std::string usage = bold("sahl " + name_of(command)) + " [" + italic("OPTIONS") + "]";
     for (const CLI::Option* option : positionals(command)) usage += " " + italic(option->get_single_name());
-    text += usage + "\n.PP\n" + escaped(command.get_description()) + ".\n";
-    for (const std::string& note : footer_of(command).notes) text += escaped(note) + "\n";
+    text += usage + "\n.PP\n" + roff(command.get_description()) + ".\n";
+    for (const std::string& note : footer_of(command).notes) text += roff(note) + "\n";
     for (const CLI::Option* option : positionals(command)) {
         text += tagged(italic(option->get_single_name()), option->get_description());
     }
@@ -134,7 +134,7 @@ const Entries& files() {
 std::string man_page(const CLI::App& app) {
     std::string text = ".TH SAHL 1 \"\" \"Sahl " SAHL_VERSION "\" \"User Commands\"\n";
     text += ".nh\n.ad l\n";
-    text += ".SH NAME\nsahl \\- " + escaped("OpenCL ray tracer") + "\n";
+    text += ".SH NAME\nsahl \\- " + roff("OpenCL ray tracer") + "\n";
     text += ".SH SYNOPSIS\n";
     for (const CLI::App* command : commands_of(app)) {
         text += bold("sahl " + name_of(*command)) + " [" + italic("OPTIONS") + "]";
@@ -143,7 +143,7 @@ std::string man_page(const CLI::App& app) {
         text += "\n.br\n";
     }
     text += bold("sahl --version") + "\n";
-    text += ".SH DESCRIPTION\n" + escaped(app.get_description()) + "\n";
+    text += ".SH DESCRIPTION\n" + roff(app.get_description()) + "\n";
     text +=
         "Options may stand before and behind the arguments, those below OPTIONS before the command too.\n";
     text += ".SH COMMANDS\n";
@@ -155,7 +155,7 @@ std::string man_page(const CLI::App& app) {
     text += section("FILES", files());
     text += ".SH EXAMPLES\n.nf\n";
     for (const CLI::App* command : commands_of(app)) {
-        for (const std::string& example : footer_of(*command).examples) text += escaped(example) + "\n";
+        for (const std::string& example : footer_of(*command).examples) text += roff(example) + "\n";
     }
     return text + ".fi\n";
 }

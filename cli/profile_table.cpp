@@ -32,7 +32,7 @@ std::string short_count(std::optional<std::uint64_t> count) {
 
 std::string percent(std::optional<double> value) { return value ? fmt::format("{:.1f}", *value) : "-"; }
 
-std::string name_of(const ProfileRow& row) {
+std::string row_name(const ProfileRow& row) {
     if (row.kernel.empty()) return "all";
     return row.variant.empty() ? row.kernel : row.kernel + " " + row.variant;
 }
@@ -46,7 +46,7 @@ constexpr const char* time_line =
 
 std::string time_row(const ProfileRow& row) {
     const ProfileMeasures& m = row.measures;
-    return fmt::format(fmt::runtime(time_line), generation_of(row), name_of(row), short_count(m.launches),
+    return fmt::format(fmt::runtime(time_line), generation_of(row), row_name(row), short_count(m.launches),
                        short_count(m.rays_in), short_count(m.rays_out), percent(m.survival_percent),
                        fmt::format("{:.3f}", m.ms_median), fmt::format("{:.3f}", m.ms_p95),
                        percent(m.wall_percent), short_number(m.mrays_per_s), short_number(m.ns_per_ray),
@@ -58,7 +58,7 @@ constexpr const char* work_line = "{:>3} {:<17}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:
 
 std::string work_row(const ProfileRow& row) {
     const ProfileMeasures& m = row.measures;
-    return fmt::format(fmt::runtime(work_line), generation_of(row), name_of(row),
+    return fmt::format(fmt::runtime(work_line), generation_of(row), row_name(row),
                        short_number(m.node_visits_per_ray), short_number(m.leaf_visits_per_ray),
                        short_number(m.bytes_per_ray), short_number(m.gb_per_s), percent(m.bandwidth_percent),
                        short_number(m.flop_per_ray), short_number(m.gflop_per_s), percent(m.fma_percent));

@@ -11,4 +11,9 @@ RenderSettings settings_of(const RenderOptions& options, const Scene& scene);
 /// The crop's, if there is one.
 Resolution image_size(const RenderSettings& settings);
 
+/// Of each pixel.
+inline int sample_count(const RenderSettings& settings) {
+    return settings.samples ? settings.samples->count() : settings.spp;
+}
+
 }  // namespace sahl::cli

@@ -36,12 +36,12 @@ BinRange bins_of(const BuildPrimitive& reference, const Grid& grid) {
 }
 
 template <class Tally>
-struct Bin {
+struct SpatialBin {
     VectorBox box;
     Tally begins;
     Tally ends;
 
-    void add(const Bin& other) {
+    void add(const SpatialBin& other) {
         box.extend(other.box);
         begins.add(other.begins);
         ends.add(other.ends);
@@ -51,8 +51,8 @@ struct Bin {
 };
 
 template <class Tally>
-struct Bins {
-    std::array<std::array<Bin<Tally>, spatial_bins>, 3> axes;
+struct SpatialBins {
+    std::array<std::array<SpatialBin<Tally>, spatial_bins>, 3> axes;
 
     void fill(const Grid& grid, std::span<const BuildPrimitive> references, const TriangleCorners& corners) {
         for (const BuildPrimitive& reference : references) {
@@ -74,7 +74,7 @@ struct Bins {
             }
         }
     }
-    void add(const Bins& other) {
+    void add(const SpatialBins& other) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (std::size_t i = 0; i < spatial_bins; ++i) axes[axis][i].add(other.axes[axis][i]);
         }
@@ -84,25 +84,25 @@ struct Bins {
 template <class Tally>
 void find(SpatialSplit& split, std::span<const BuildPrimitive> references, const TriangleCorners& corners,
           const Price& price, const SideLimits& limits) {
-    Bins<Tally> bins;
+    SpatialBins<Tally> bins;
     if (references.size() < parallel_set_size) {
         bins.fill(split.grid, references, corners);
     } else {
         bins = tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, references.size(), parallel_grain), Bins<Tally>{},
-            [&](const tbb::blocked_range<std::size_t>& range, Bins<Tally> sum) {
+            tbb::blocked_range<std::size_t>(0, references.size(), parallel_grain), SpatialBins<Tally>{},
+            [&](const tbb::blocked_range<std::size_t>& range, SpatialBins<Tally> sum) {
                 sum.fill(split.grid, references.subspan(range.begin(), range.size()), corners);
                 return sum;
             },
-            [](Bins<Tally> sum, const Bins<Tally>& other) {
+            [](SpatialBins<Tally> sum, const SpatialBins<Tally>& other) {
                 sum.add(other);
                 return sum;
             });
     }
     for (int axis = 0; axis < 3; ++axis) {
         if (split.grid.scale[axis] == 0.0F) continue;
-        sweep(std::span<const Bin<Tally>>(bins.axes[static_cast<std::size_t>(axis)]), price, axis, limits,
-              split.border);
+        sweep(std::span<const SpatialBin<Tally>>(bins.axes[static_cast<std::size_t>(axis)]), price, axis,
+              limits, split.border);
     }
     if (!split.found()) return;
     const auto& best = bins.axes[static_cast<std::size_t>(split.border.axis)];

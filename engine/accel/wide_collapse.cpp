@@ -17,11 +17,11 @@ namespace sahl {
 namespace {
 
 // Subtrees of as many references are tasks of their own.
-constexpr std::size_t task_size = 1u << 12;
+constexpr std::size_t references_a_task = 1u << 12;
 
 // A subtree of the binary tree: `node` is an index or a leaf. Its references begin at `begin`, and all
 // others' before that or at `limit` or behind.
-struct Subtree {
+struct BinarySubtree {
     std::uint32_t node = binary_leaf;
     std::uint32_t begin = 0;
     std::uint32_t limit = 0;
@@ -30,7 +30,7 @@ struct Subtree {
 };
 
 struct Children {
-    std::array<Subtree, wide_width> subtrees{};
+    std::array<BinarySubtree, wide_width> subtrees{};
     std::size_t size = 0;
 };
 
@@ -44,20 +44,20 @@ struct Collapse {
     BinaryTree& tree;
     Bvh& bvh;
 
-    void cut(const Subtree& subtree, std::uint32_t most, Children& children) const;
-    Children open(const Subtree& parent) const;
-    std::uint32_t kind_of(const Subtree& leaf) const { return tree.references[leaf.begin].kind; }
-    Bounds bounds_of(const Subtree& subtree) const;
-    void measure(const Subtree& node) const;
-    WideExtent extent_of(const Subtree& subtree) const;
-    void place_node(const Subtree& parent, const WideExtent& before) const;
-    std::uint32_t place_leaf(const Subtree& leaf, const WideExtent& before) const;
+    void cut(const BinarySubtree& subtree, std::uint32_t most, Children& children) const;
+    Children open(const BinarySubtree& parent) const;
+    std::uint32_t kind_of(const BinarySubtree& leaf) const { return tree.references[leaf.begin].kind; }
+    Bounds bounds_of(const BinarySubtree& subtree) const;
+    void measure(const BinarySubtree& node) const;
+    WideExtent extent_of(const BinarySubtree& subtree) const;
+    void place_node(const BinarySubtree& parent, const WideExtent& before) const;
+    std::uint32_t place_leaf(const BinarySubtree& leaf, const WideExtent& before) const;
 };
 
 // Calls work(0), ... work(size - 1) for the children of `parent`, as tasks if it is large.
 template <class Work>
-void for_children(const Subtree& parent, std::size_t size, const Work& work) {
-    if (parent.limit - parent.begin < task_size) {
+void for_children(const BinarySubtree& parent, std::size_t size, const Work& work) {
+    if (parent.limit - parent.begin < references_a_task) {
         for (std::size_t i = 0; i < size; ++i) work(i);
         return;
     }
@@ -67,7 +67,7 @@ void for_children(const Subtree& parent, std::size_t size, const Work& work) {
 }
 
 // Appends `subtree` as at most `most` children.
-void Collapse::cut(const Subtree& subtree, std::uint32_t most, Children& children) const {
+void Collapse::cut(const BinarySubtree& subtree, std::uint32_t most, Children& children) const {
     if (!subtree.is_leaf() && most > 1) {
         const BinaryNode& node = tree.nodes[subtree.node];
         const CutShare share = share_of(node.plan, most);
@@ -82,11 +82,11 @@ void Collapse::cut(const Subtree& subtree, std::uint32_t most, Children& childre
 
 // The children of `parent` as a wide node, once those below are measured. Where a child's own children find
 // room beside the others, the plan has them there, but for what rounding hides; most_nodes() relies on it.
-Children Collapse::open(const Subtree& parent) const {
+Children Collapse::open(const BinarySubtree& parent) const {
     Children children;
     cut(parent, wide_width, children);
     for (std::size_t i = 0; i < children.size;) {
-        const Subtree child = children.subtrees[i];
+        const BinarySubtree child = children.subtrees[i];
         if (child.is_leaf() || children.size - 1 + tree.nodes[child.node].extent.children > wide_width) {
             ++i;
             continue;
@@ -98,13 +98,13 @@ Children Collapse::open(const Subtree& parent) const {
     return children;
 }
 
-WideExtent Collapse::extent_of(const Subtree& subtree) const {
+WideExtent Collapse::extent_of(const BinarySubtree& subtree) const {
     return subtree.is_leaf() ? WideExtent{1, 0, 1, block_lines(kind_of(subtree))}
                              : tree.nodes[subtree.node].extent;
 }
 
 // Finds the extents of `node`, which becomes a wide one, and of all wide ones below it.
-void Collapse::measure(const Subtree& node) const {
+void Collapse::measure(const BinarySubtree& node) const {
     Children planned;
     cut(node, wide_width, planned);
     for_children(node, planned.size, [&](std::size_t i) {
@@ -116,7 +116,7 @@ void Collapse::measure(const Subtree& node) const {
     tree.nodes[node.node].extent = sum;
 }
 
-Bounds Collapse::bounds_of(const Subtree& subtree) const {
+Bounds Collapse::bounds_of(const BinarySubtree& subtree) const {
     if (!subtree.is_leaf()) return tree.nodes[subtree.node].bounds;
     Bounds bounds = empty_bounds();
     const std::uint32_t end = subtree.begin + (subtree.node & ~binary_leaf);
@@ -124,7 +124,7 @@ Bounds Collapse::bounds_of(const Subtree& subtree) const {
     return bounds;
 }
 
-std::uint32_t Collapse::place_leaf(const Subtree& leaf, const WideExtent& before) const {
+std::uint32_t Collapse::place_leaf(const BinarySubtree& leaf, const WideExtent& before) const {
     BvhLeaf& block = bvh.leaves[before.leaves];
     block.kind = kind_of(leaf);
     const std::uint32_t end = leaf.begin + (leaf.node & ~binary_leaf);
@@ -138,7 +138,7 @@ std::uint32_t Collapse::place_leaf(const Subtree& leaf, const WideExtent& before
 }
 
 // Writes the wide tree of `parent` behind all that is `before` it.
-void Collapse::place_node(const Subtree& parent, const WideExtent& before) const {
+void Collapse::place_node(const BinarySubtree& parent, const WideExtent& before) const {
     const Children children = open(parent);
     std::array<Bounds, wide_width> boxes;
     for (std::size_t i = 0; i < children.size; ++i) boxes[i] = bounds_of(children.subtrees[i]);
@@ -157,7 +157,7 @@ void Collapse::place_node(const Subtree& parent, const WideExtent& before) const
         add(next, extent_of(children.subtrees[child]));
     }
     for_children(parent, children.size, [&](std::size_t i) {
-        const Subtree& child = children.subtrees[i];
+        const BinarySubtree& child = children.subtrees[i];
         const auto slot = static_cast<std::size_t>(slot_of[i]);
         node.lo_x[slot] = boxes[i].lo[0];
         node.lo_y[slot] = boxes[i].lo[1];
@@ -202,7 +202,7 @@ std::uint32_t addressable_lines(std::uint64_t lines) {
 void collapse(BinaryTree& tree, Bvh& bvh) {
     const auto references = static_cast<std::uint32_t>(tree.references.size());
     const Collapse step{tree, bvh};
-    const Subtree root{tree.root, 0, references};
+    const BinarySubtree root{tree.root, 0, references};
     if (!root.is_leaf()) step.measure(root);
     WideExtent whole = step.extent_of(root);
     if (root.is_leaf()) ++whole.nodes;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_blocks = 20;
 constexpr int default_pairs = 15;  ///< of a block
-constexpr double most_seconds = 3;
+constexpr double most_seconds_of_pairs = 3;
 
 using Contenders = std::array<std::optional<Contender>, 2>;
 
@@ -67,7 +67,7 @@ TurnTimes measure_in_turn(const std::array<std::function<Contender()>, 2>& maker
         }
         const auto is_enough = [&](int pairs, double seconds) {
             if (options.pairs) return pairs == pairs_of_block(block, blocks, *options.pairs);
-            return pairs == default_pairs || (pairs > 0 && seconds > most_seconds);
+            return pairs == default_pairs || (pairs > 0 && seconds > most_seconds_of_pairs);
         };
         const std::array<ProfileTimes, 2> measured =
             measure_block(contenders, lots, is_enough, between_frames);

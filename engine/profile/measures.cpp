@@ -9,11 +9,11 @@
 
 #include "engine/profile/declared_cost.h"
 #include "engine/profile/statistics.h"
+#include "engine/profile/timeline.h"
 
 namespace sahl {
 namespace {
 
-constexpr double ms_per_ns = 1e-6;
 constexpr std::array<std::string_view, 7> pipeline{"generate",       "intersect",    "shade",  "shadow",
                                                    "count_children", "sum_children", "compact"};
 
@@ -131,7 +131,7 @@ void add_work(Sums& sums, std::string_view kernel, const GenerationWork& work) {
 
 std::vector<double> milliseconds(const std::vector<std::uint64_t>& ns) {
     std::vector<double> result;
-    for (const std::uint64_t time : ns) result.push_back(static_cast<double>(time) * ms_per_ns);
+    for (const std::uint64_t time : ns) result.push_back(in_ms(time));
     return result;
 }
 
@@ -164,7 +164,7 @@ ProfileMeasures measures_of(const Sums& sums, bool with_visits, const Profile& p
     }
     if (m.ms_median <= 0 || m.rays_in == 0) return m;
     const double rays = static_cast<double>(m.rays_in);
-    const double ns = m.ms_median / ms_per_ns;
+    const double ns = m.ms_median * 1e6;
     m.mrays_per_s = rays / ns * 1e3;
     m.ns_per_ray = ns / rays;
     if (m.bytes_per_ray) {

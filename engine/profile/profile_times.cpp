@@ -10,13 +10,12 @@
 
 #include "engine/core/error.h"
 #include "engine/profile/measures.h"
+#include "engine/profile/timeline.h"
 
 namespace sahl {
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr int format_version = 1;
+constexpr int times_version = 1;
 
 /// Adds row by row; what belongs together adds up repetition by repetition.
 class RowTable {
@@ -57,12 +56,10 @@ private:
     std::vector<std::string> order_;
 };
 
-double ms(std::uint64_t ns) { return static_cast<double>(ns) * 1e-6; }
-
 /// A value in a profile's file, which knows where it stands.
 class Value {
 public:
-    Value(const Json& json, const std::string& file, std::string path)
+    Value(const nlohmann::json& json, const std::string& file, std::string path)
         : json_(json), file_(file), path_(std::move(path)) {}
 
     Value at(const char* key) const {
@@ -98,7 +95,7 @@ public:
     }
 
 private:
-    const Json& json_;
+    const nlohmann::json& json_;
     const std::string& file_;
     std::string path_;
 };
@@ -138,7 +135,7 @@ std::vector<double> samples_of(const Value& row, std::size_t repetitions) {
     return samples;
 }
 
-Json parse_file(const std::filesystem::path& path) {
+nlohmann::json parse_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {
         throw Error(ExitCode::scene,
@@ -146,8 +143,8 @@ Json parse_file(const std::filesystem::path& path) {
                                 path.string()));
     }
     try {
-        return Json::parse(file);
-    } catch (const Json::exception& error) {
+        return nlohmann::json::parse(file);
+    } catch (const nlohmann::json::exception& error) {
         throw Error(ExitCode::scene, fmt::format("{}: no JSON: {}", path.string(), error.what()));
     }
 }
@@ -167,12 +164,12 @@ const TimedRow* find_row(const ProfileTimes& times, const std::string& name) {
 
 ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<TimelineRecord>& frames) {
     std::vector<double> wall;
-    for (const TimelineRecord& frame : frames) wall.push_back(ms(frame.end_ns - frame.begin_ns));
+    for (const TimelineRecord& frame : frames) wall.push_back(in_ms(frame.end_ns - frame.begin_ns));
     RowTable table(std::move(wall));
     for (std::size_t i = 0; i < frames.size(); ++i) {
         for (const LaunchRecord& launch : frames[i].launches) {
             std::vector<double> samples(frames.size());
-            samples[i] = ms(launch.ended_ns - launch.started_ns);
+            samples[i] = in_ms(launch.ended_ns - launch.started_ns);
             table.add(split_name(launch.kernel).first, launch.generation, samples);
         }
     }
@@ -180,14 +177,14 @@ ProfileTimes times_of(const ProfileEnvironment& environment, const std::vector<T
 }
 
 ProfileTimes read_profile_times(const std::filesystem::path& path) {
-    const Json json = parse_file(path);
+    const nlohmann::json json = parse_file(path);
     const std::string file = path.string();
     const Value document(json, file, "");
-    if (const std::uint64_t version = document.at("version").whole(); version != format_version) {
+    if (const std::uint64_t version = document.at("version").whole(); version != times_version) {
         throw Error(ExitCode::scene,
                     fmt::format("{}: a profile in version {} of the format; this program reads "
                                 "version {}: profile again with it",
-                                file, version, format_version));
+                                file, version, times_version));
     }
     ProfileTimes times{environment_of(document.at("environment")), {}};
     std::vector<double> wall;

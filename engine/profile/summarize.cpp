@@ -18,17 +18,13 @@
 namespace sahl {
 namespace {
 
-constexpr double ms_per_ns = 1e-6;
-
-double ms(std::uint64_t ns) { return static_cast<double>(ns) * ms_per_ns; }
-
 TimeBreakdown breakdown(const TimelineRecord& record, const TimelineSums& sums) {
     TimeBreakdown time;
-    time.wall_ms = ms(record.end_ns - record.begin_ns);
-    time.device_busy_ms = ms(sums.busy_ns);
-    time.device_idle_ms = ms(sums.idle_ns);
-    time.unattributed_ms = ms(sums.unattributed_ns);
-    for (const auto& [name, step] : sums.steps) time.exposed_ms[name] = ms(step.exposed_ns);
+    time.wall_ms = in_ms(record.end_ns - record.begin_ns);
+    time.device_busy_ms = in_ms(sums.busy_ns);
+    time.device_idle_ms = in_ms(sums.idle_ns);
+    time.unattributed_ms = in_ms(sums.unattributed_ns);
+    for (const auto& [name, step] : sums.steps) time.exposed_ms[name] = in_ms(step.exposed_ns);
     return time;
 }
 
@@ -36,13 +32,13 @@ TimeBreakdown breakdown(const TimelineRecord& record, const TimelineSums& sums) 
 void check_sum(const TimelineRecord& record, const TimelineSums& sums) {
     std::uint64_t launches = 0;
     for (const LaunchRecord& launch : record.launches) launches += launch.ended_ns - launch.started_ns;
-    const double difference = std::abs(ms(launches) - ms(sums.busy_ns));
-    if (difference <= 1e-3 * ms(record.end_ns - record.begin_ns)) return;
+    const double difference = std::abs(in_ms(launches) - in_ms(sums.busy_ns));
+    if (difference <= 1e-3 * in_ms(record.end_ns - record.begin_ns)) return;
     throw Error(
         ExitCode::internal,
         fmt::format("the launches of a frame took {:.3f} ms and the device was busy for {:.3f} ms: its "
                     "event times cannot be trusted",
-                    ms(launches), ms(sums.busy_ns)));
+                    in_ms(launches), in_ms(sums.busy_ns)));
 }
 
 std::vector<ProfileHostStep> host_steps(ProfilePhase phase, const std::vector<TimelineSums>& frames) {
@@ -58,8 +54,8 @@ std::vector<ProfileHostStep> host_steps(ProfilePhase phase, const std::vector<Ti
             const auto found = frame.steps.find(name);
             const HostStepTime time = found == frame.steps.end() ? HostStepTime{} : found->second;
             step.calls = std::max(step.calls, time.calls);
-            step.samples_ms.push_back(ms(time.total_ns));
-            exposed.push_back(ms(time.exposed_ns));
+            step.samples_ms.push_back(in_ms(time.total_ns));
+            exposed.push_back(in_ms(time.exposed_ns));
         }
         step.ms_total = median(step.samples_ms);
         step.ms_exposed = median(exposed);

@@ -5,22 +5,22 @@
 namespace sahl {
 namespace {
 
-struct Interval {
+struct BusyInterval {
     std::uint64_t begin = 0, end = 0;
 };
 
 /// When launches ran, within the record: disjoint, ascending.
-std::vector<Interval> busy_intervals(const TimelineRecord& record) {
-    std::vector<Interval> intervals;
+std::vector<BusyInterval> busy_intervals(const TimelineRecord& record) {
+    std::vector<BusyInterval> intervals;
     for (const LaunchRecord& launch : record.launches) {
         const std::uint64_t begin = std::clamp(launch.started_ns, record.begin_ns, record.end_ns);
         const std::uint64_t end = std::clamp(launch.ended_ns, record.begin_ns, record.end_ns);
         if (begin < end) intervals.push_back({begin, end});
     }
     std::sort(intervals.begin(), intervals.end(),
-              [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
-    std::vector<Interval> merged;
-    for (const Interval& interval : intervals) {
+              [](const BusyInterval& a, const BusyInterval& b) { return a.begin < b.begin; });
+    std::vector<BusyInterval> merged;
+    for (const BusyInterval& interval : intervals) {
         if (!merged.empty() && interval.begin <= merged.back().end) {
             merged.back().end = std::max(merged.back().end, interval.end);
         } else {
@@ -54,9 +54,9 @@ std::vector<HostSegment> host_segments(const TimelineRecord& record) {
 }
 
 TimelineSums add_up(const TimelineRecord& record) {
-    const std::vector<Interval> busy = busy_intervals(record);
+    const std::vector<BusyInterval> busy = busy_intervals(record);
     TimelineSums sums;
-    for (const Interval& interval : busy) sums.busy_ns += interval.end - interval.begin;
+    for (const BusyInterval& interval : busy) sums.busy_ns += interval.end - interval.begin;
     sums.idle_ns = record.end_ns - record.begin_ns - sums.busy_ns;
     for (const HostEvent& event : record.steps) {
         if (event.begins != nullptr) ++sums.steps[event.begins].calls;

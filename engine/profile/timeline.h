@@ -20,6 +20,9 @@ struct TimelineRecord {
     std::vector<HiddenStep> hidden{};  ///< by other threads: in the steps' totals, never exposed
 };
 
+/// Nanoseconds in milliseconds.
+inline double in_ms(std::uint64_t ns) { return static_cast<double>(ns) * 1e-6; }
+
 /// A stretch of time in which one host step is the innermost.
 struct HostSegment {
     std::uint64_t begin_ns = 0;

@@ -19,8 +19,6 @@
 namespace sahl {
 namespace {
 
-constexpr int largest_depth = 1000;
-
 class Cse167Reader {
 public:
     explicit Cse167Reader(TextReader& reader) : reader_(reader) {
@@ -44,7 +42,7 @@ private:
     void read_camera();
     void read_output();
     void read_depth() {
-        scene_.depth = static_cast<int>(reader_.whole_number("the depth", 0, largest_depth));
+        scene_.depth = static_cast<int>(reader_.whole_number("the depth", 0, cse167_largest_depth));
     }
     void read_hint() {
         reader_.whole_number("a number of vertices", 0, std::numeric_limits<std::uint32_t>::max());

@@ -6,6 +6,9 @@
 
 namespace sahl {
 
+/// Of rays, that a scene may ask for.
+inline constexpr int cse167_largest_depth = 1000;
+
 /// Reads CSE 167: one command a line, `size` first.
 ///
 /// What the format leaves open is decided so: `attenuation` is global, the last one in the file holds

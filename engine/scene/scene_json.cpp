@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int format_version = 1;
-constexpr int largest_depth = 64;
 
 void check_version(const JsonReader& reader, const JsonObject& file) {
     const JsonValue* value = file.find("sahl");
@@ -116,7 +115,7 @@ FileScene read_json_scene(const JsonDocument& document, const fs::path& path, Sc
     scene.cameras.clear();
     if (const JsonValue* value = file.find("film")) read_film(reader, *value, scene.resolution);
     if (const JsonValue* value = file.find("depth")) {
-        scene.depth = static_cast<int>(reader.integer(*value, "depth", {0, largest_depth}));
+        scene.depth = static_cast<int>(reader.integer(*value, "depth", {0, json_largest_depth}));
     }
     if (const JsonValue* value = file.find("background"))
         scene.background = reader.color(*value, "background");

@@ -9,6 +9,9 @@
 
 namespace sahl {
 
+/// Of rays, that a scene may ask for.
+inline constexpr int json_largest_depth = 64;
+
 /// Reads the text of the Sahl scene at `path`, which need not exist; what the scene includes is looked
 /// for relative to it.
 ///

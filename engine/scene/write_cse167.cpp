@@ -14,14 +14,13 @@
 #include <glm/matrix.hpp>
 
 #include "engine/scene/polygon.h"
+#include "engine/scene/scene_cse167.h"
 #include "engine/scene/write_text.h"
 
 namespace sahl {
 namespace {
 
-constexpr int largest_depth = 1000;
-
-[[noreturn]] void fail(std::string_view lacks) { cannot_express(".test", lacks); }
+[[noreturn]] void refuse(std::string_view lacks) { cannot_express(".test", lacks); }
 
 /// rotate(axis, degrees) · scale(factors), or the other way round.
 struct TurnAndScale {
@@ -125,9 +124,9 @@ std::string Cse167Writer::write() {
     for (std::size_t id = 0; id < scene_.primitives.size(); ++id) {
         const Primitive& p = scene_.primitives[id];
         if (p.kind != PrimitiveKind::triangle && p.kind != PrimitiveKind::sphere)
-            fail(fmt::format("has no shapes but triangles and spheres: {}", object_text(scene_, id)));
+            refuse(fmt::format("has no shapes but triangles and spheres: {}", object_text(scene_, id)));
         if (p.sides != Sides::both)
-            fail(fmt::format("has no one-sided objects: {}", object_text(scene_, id)));
+            refuse(fmt::format("has no one-sided objects: {}", object_text(scene_, id)));
         if (!can_be_hit(p)) continue;
         use_transform(id);
         use_material(p.material);
@@ -147,11 +146,11 @@ std::string Cse167Writer::write() {
 
 void Cse167Writer::check_whole() const {
     if (scene_.cameras.size() > 1)
-        fail(fmt::format("has one camera, and the scene has {}", scene_.cameras.size()));
-    if (scene_.depth > largest_depth)
-        fail(fmt::format("has depths up to {}, and the scene's is {}", largest_depth, scene_.depth));
-    if (scene_.background != glm::vec3(0)) fail("has no background but black");
-    if (!scene_.groups.empty()) fail("has no groups and instances");
+        refuse(fmt::format("has one camera, and the scene has {}", scene_.cameras.size()));
+    if (scene_.depth > cse167_largest_depth)
+        refuse(fmt::format("has depths up to {}, and the scene's is {}", cse167_largest_depth, scene_.depth));
+    if (scene_.background != glm::vec3(0)) refuse("has no background but black");
+    if (!scene_.groups.empty()) refuse("has no groups and instances");
 }
 
 void Cse167Writer::write_head() {
@@ -166,7 +165,7 @@ void Cse167Writer::write_lights() {
     std::optional<glm::vec3> attenuation;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light& light = scene_.lights[i];
-        if (light.kind == LightKind::spot) fail(fmt::format("has no spot lights: light {}", i + 1));
+        if (light.kind == LightKind::spot) refuse(fmt::format("has no spot lights: light {}", i + 1));
         if (light.kind == LightKind::directional) {
             line("directional {} {}", decimals(light.position), decimals(light.color));
             continue;
@@ -174,7 +173,7 @@ void Cse167Writer::write_lights() {
         if (!attenuation && light.attenuation != glm::vec3(1, 0, 0))
             line("attenuation {}", decimals(light.attenuation));
         if (light.attenuation != attenuation.value_or(light.attenuation))
-            fail(fmt::format("has one attenuation for all point lights: light {}", i + 1));
+            refuse(fmt::format("has one attenuation for all point lights: light {}", i + 1));
         attenuation = light.attenuation;
         line("point {} {}", decimals(light.position), decimals(light.color));
     }
@@ -183,7 +182,7 @@ void Cse167Writer::write_lights() {
 void Cse167Writer::check_material(std::uint32_t material) const {
     const Material& m = scene_.materials[material];
     const auto need = [&](bool holds, std::string_view lacks) {
-        if (!holds) fail(fmt::format("{}: {}", lacks, material_text(scene_, material)));
+        if (!holds) refuse(fmt::format("{}: {}", lacks, material_text(scene_, material)));
     };
     need(m.ambient == glm::vec3(0) || scene_.ambient == glm::vec3(1), "has no ambient light but 1 1 1");
     need(m.specular == m.reflection,
@@ -222,7 +221,7 @@ void Cse167Writer::use_transform(std::size_t id) {
     const glm::dmat4& m = scene_.transforms[transform];
     const auto linear = find_turn_and_scale(m);
     if (!linear) {
-        fail(
+        refuse(
             fmt::format("has only translate, rotate and scale, and no turn and scale were found that make "
                         "the transform of {}",
                         object_text(scene_, id)));

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/json_layout.h"
+#include "engine/scene/scene_json.h"
 #include "engine/scene/validate.h"
 #include "engine/scene/write_json_mesh.h"
 #include "engine/scene/write_text.h"
@@ -18,8 +19,6 @@ namespace sahl {
 namespace {
 
 using Lines = JsonLayout::Lines;
-
-constexpr int largest_depth = 64;
 
 // Grey is one number.
 std::string color(const glm::vec3& c) { return c == glm::vec3(c.r) ? json_number(c.r) : json_vector(c); }
@@ -71,11 +70,11 @@ private:
 };
 
 std::string JsonWriter::write() {
-    if (scene_.depth > largest_depth) {
+    if (scene_.depth > json_largest_depth) {
         throw Error(ExitCode::scene,
                     fmt::format("the scene's depth is {}, and a Sahl scene (.json) has {} at "
                                 "most; lower it in the scene that is read",
-                                scene_.depth, largest_depth));
+                                scene_.depth, json_largest_depth));
     }
     for (const Material& m : scene_.materials) material_names_.add(m.name);
     for (const Group& g : scene_.groups) group_names_.add(g.name);

@@ -43,7 +43,7 @@ struct Render {
 
 std::vector<float> pixels(const fs::path& path) { return read_image(path).pixels; }
 
-int count(int in_short, int in_full) { return full_tests() ? in_full : in_short; }
+int repeats(int in_short, int in_full) { return full_tests() ? in_full : in_short; }
 
 /// A moment of something that takes so many seconds.
 std::chrono::duration<double> moment(std::mt19937& random, double seconds) {
@@ -66,7 +66,7 @@ TEST_CASE("failures: an image on a full disk is exit status 6 and the old file s
     REQUIRE(render.run().status == 0);
     const std::string whole = content_of(disk / "a.exr");  // 74 KB
     int failed = 0;
-    const int steps = count(6, 40);
+    const int steps = repeats(6, 40);
     for (int i = 0; i < steps; ++i) {
         const auto left = static_cast<std::size_t>(i * 256 * 1024 / steps);
         INFO(left << " bytes are free");
@@ -97,7 +97,7 @@ TEST_CASE("failures: a full disk under PoCL is exit status 4 or none, whenever i
     const TemporaryFolder folder;
     const fs::path cold = folder / "cold";
     std::mt19937 random(5);
-    for (int i = 0; i < count(3, 20); ++i) {
+    for (int i = 0; i < repeats(3, 20); ++i) {
         const SmallDisk disk(40 << 20);
         SAHL_REQUIRE_DISK(disk);
         fs::remove_all(cold);
@@ -183,7 +183,7 @@ TEST_CASE("failures: damaged cache files are rebuilt, the pixels stay the same",
     const fs::path file = fs::directory_iterator(cache.path())->path();
     const std::string good = content_of(file);
     std::mt19937 random(6);
-    for (int i = 0; i < count(2, 40); ++i) {
+    for (int i = 0; i < repeats(2, 40); ++i) {
         std::string bad = good;
         const std::size_t place = std::uniform_int_distribution<std::size_t>(0, good.size() - 1)(random);
         if (i % 2 == 0) {
@@ -296,7 +296,7 @@ TEST_CASE("failures: killed at any moment, no file is broken, and the next run t
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const std::vector<float> whole = pixels(folder / "a.exr");
     std::mt19937 random(7);
-    for (int i = 0; i < count(10, 100); ++i) {
+    for (int i = 0; i < repeats(10, 100); ++i) {
         if (i % 5 == 0)  // a cold one
             for (const auto& entry : fs::directory_iterator(cache.path())) fs::remove(entry.path());
         write_file(folder / "a.exr", "old");

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ProcessResult render_in(const fs::path& folder, std::vector<std::string> arguments) {
+ProcessResult render_mirrors_in(const fs::path& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"render", scene_file("cli_mirrors.nff")});
     return run_sahl_in(folder, arguments);
 }
@@ -19,7 +19,7 @@ ProcessResult render_in(const fs::path& folder, std::vector<std::string> argumen
 /// Fails with 2, says so, and leaves nothing.
 void check_refused(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) {
     const TemporaryFolder folder;
-    const ProcessResult result = render_in(folder.path(), arguments);
+    const ProcessResult result = render_mirrors_in(folder.path(), arguments);
     INFO(result.err);
     CHECK(result.status == 2);
     CHECK(result.out == "");
@@ -30,7 +30,7 @@ void check_refused(const std::vector<std::string>& arguments, const std::vector<
     CHECK(folder.entries() == 0);
 }
 
-OIIO::ImageSpec spec_of(const fs::path& path) {
+OIIO::ImageSpec image_spec(const fs::path& path) {
     const auto input = OIIO::ImageInput::open(path.string());
     REQUIRE(input);
     return input->spec();
@@ -38,7 +38,7 @@ OIIO::ImageSpec spec_of(const fs::path& path) {
 
 TEST_CASE("outputs: several images of one run are those of single runs, bit for bit", "[cli]") {
     const TemporaryFolder folder;
-    const ProcessResult result = render_in(
+    const ProcessResult result = render_mirrors_in(
         folder.path(), {"-o", "a.exr", "-o", "a.png", "--output", "sub/a.tif", "--exposure", "1", "--json"});
     INFO(result.err);
     REQUIRE(result.status == 0);
@@ -49,16 +49,16 @@ TEST_CASE("outputs: several images of one run are those of single runs, bit for 
     CHECK(event.at("path") == "a.exr");
     for (const std::string name : {"a.exr", "a.png", "sub/a.tif"}) {
         const std::string single = "single" + fs::path(name).extension().string();
-        REQUIRE(render_in(folder.path(), {"-o", single, "--exposure", "1"}).status == 0);
+        REQUIRE(render_mirrors_in(folder.path(), {"-o", single, "--exposure", "1"}).status == 0);
         CHECK(read_image(folder / name).pixels == read_image(folder / single).pixels);
-        REQUIRE(render_in(folder.path(), {"-o", single}).status == 0);
+        REQUIRE(render_mirrors_in(folder.path(), {"-o", single}).status == 0);
         CHECK(read_image(folder / name).pixels != read_image(folder / single).pixels);  // all are exposed
     }
 }
 
 TEST_CASE("outputs: a series in several formats", "[cli]") {
     const TemporaryFolder folder;
-    const ProcessResult result = render_in(
+    const ProcessResult result = render_mirrors_in(
         folder.path(), {"--depth", "0,3", "-o", "d{depth}.exr", "-o", "{depth}/p.png", "--json", "-q"});
     REQUIRE(result.status == 0);
     for (const char* name : {"d0.exr", "d3.exr", "0/p.png", "3/p.png"}) CHECK(fs::exists(folder / name));
@@ -79,7 +79,8 @@ TEST_CASE("outputs: two images of one name, or a series without {depth} in one",
 TEST_CASE("outputs: each is checked before rendering", "[cli]") {
     const TemporaryFolder folder;
     write_file(folder / "file", "");
-    const ProcessResult result = render_in(folder.path(), {"-o", "a.png", "-o", "file/b.png", "--json"});
+    const ProcessResult result =
+        render_mirrors_in(folder.path(), {"-o", "a.png", "-o", "file/b.png", "--json"});
     INFO(result.err);
     CHECK(result.status == 6);
     CHECK(contains(result.err, "file/b.png"));
@@ -89,13 +90,14 @@ TEST_CASE("outputs: each is checked before rendering", "[cli]") {
 
 TEST_CASE("outputs: settings go to the images that can hold them", "[cli]") {
     const TemporaryFolder folder;
-    REQUIRE(render_in(folder.path(), {"-o", "a.exr", "-o", "a.png", "-o", "a.tif", "--pixel-type", "uint16",
-                                      "--transfer", "srgb", "--rounding", "floor", "--compression", "piz"})
+    REQUIRE(render_mirrors_in(folder.path(),
+                              {"-o", "a.exr", "-o", "a.png", "-o", "a.tif", "--pixel-type", "uint16",
+                               "--transfer", "srgb", "--rounding", "floor", "--compression", "piz"})
                 .status == 0);
-    CHECK(spec_of(folder / "a.exr").format == OIIO::TypeDesc::HALF);
-    CHECK(spec_of(folder / "a.exr").get_string_attribute("compression") == "piz");
-    CHECK(spec_of(folder / "a.png").format == OIIO::TypeDesc::UINT16);
-    CHECK(spec_of(folder / "a.tif").format == OIIO::TypeDesc::UINT16);
+    CHECK(image_spec(folder / "a.exr").format == OIIO::TypeDesc::HALF);
+    CHECK(image_spec(folder / "a.exr").get_string_attribute("compression") == "piz");
+    CHECK(image_spec(folder / "a.png").format == OIIO::TypeDesc::UINT16);
+    CHECK(image_spec(folder / "a.tif").format == OIIO::TypeDesc::UINT16);
 
     check_refused({"-o", "a.jpg", "-o", "a.png", "--pixel-type", "half"},
                   {"pixel type half fits none", "'a.jpg' holds uint8", "'a.png' holds uint8, uint16"});
@@ -120,12 +122,12 @@ TEST_CASE("outputs: AOVs that are not there, or have no room", "[cli]") {
 TEST_CASE("outputs: the camera's name is in the file and the start event", "[cli]") {
     const TemporaryFolder folder;
     const ProcessResult result =
-        render_in(folder.path(), {"--camera", "camera", "-o", "a.exr", "-o", "a.png", "--json"});
+        render_mirrors_in(folder.path(), {"--camera", "camera", "-o", "a.exr", "-o", "a.png", "--json"});
     INFO(result.err);
     REQUIRE(result.status == 0);
     CHECK(json_lines(result.out).at(0).at("camera") == "camera");
     for (const char* name : {"a.exr", "a.png"})
-        CHECK(spec_of(folder / name).get_string_attribute("Sahl:Camera") == "camera");
+        CHECK(image_spec(folder / name).get_string_attribute("Sahl:Camera") == "camera");
     check_refused({"--camera", "camra"}, {"--camera 'camra'", "did you mean 'camera'?", "it has camera"});
 }
 
@@ -141,15 +143,15 @@ TEST_CASE("outputs: exposure and parameters are in the file if they were given",
     const std::vector<std::string> plain{"render", "a.json", "-o", "a.exr", "-o", "a.png"};
     REQUIRE(run_sahl_in(folder.path(), plain).status == 0);
     for (const char* name : {"a.exr", "a.png"}) {
-        CHECK(spec_of(folder / name).find_attribute("Sahl:Exposure") == nullptr);
-        CHECK(spec_of(folder / name).find_attribute("Sahl:Parameters") == nullptr);
+        CHECK(image_spec(folder / name).find_attribute("Sahl:Exposure") == nullptr);
+        CHECK(image_spec(folder / name).find_attribute("Sahl:Parameters") == nullptr);
     }
     std::vector<std::string> given = plain;
     given.insert(given.end(), {"--exposure", "-1.5", "--set", "glow=1,0.5,0", "--set", "size=2"});
     REQUIRE(run_sahl_in(folder.path(), given).status == 0);
     for (const char* name : {"a.exr", "a.png"}) {
-        CHECK(spec_of(folder / name).get_string_attribute("Sahl:Exposure") == "-1.5");
-        CHECK(spec_of(folder / name).get_string_attribute("Sahl:Parameters") == "glow=1,0.5,0 size=2");
+        CHECK(image_spec(folder / name).get_string_attribute("Sahl:Exposure") == "-1.5");
+        CHECK(image_spec(folder / name).get_string_attribute("Sahl:Parameters") == "glow=1,0.5,0 size=2");
     }
 }
 
@@ -170,7 +172,7 @@ TEST_CASE("outputs: a scene's cameras, its first by default", "[cli]") {
         const ProcessResult result = run_sahl_in(folder.path(), arguments);
         INFO(result.err);
         REQUIRE(result.status == 0);
-        CHECK(spec_of(folder / "a.exr").get_string_attribute("Sahl:Camera") ==
+        CHECK(image_spec(folder / "a.exr").get_string_attribute("Sahl:Camera") ==
               json_lines(result.out).at(0).at("camera").get<std::string>());
         return read_image(folder / "a.exr").pixels.at(3 * 40);
     };

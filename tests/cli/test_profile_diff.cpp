@@ -8,10 +8,10 @@ namespace sahl::tests {
 namespace {
 
 /// base.json, and other.json, whose kernel shade takes 5 % longer.
-struct Pair {
+struct ProfilePair {
     TemporaryFolder folder;
 
-    Pair() {
+    ProfilePair() {
         write_file(folder / "base.json", made_profile({1}).dump());
         write_file(folder / "other.json", made_profile({.seed = 2, .factors = {{"shade", 1.05}}}).dump());
     }
@@ -23,7 +23,7 @@ struct Pair {
 };
 
 TEST_CASE("profile diff: the table says what is slower and warns of drift", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     const ProcessResult result = pair.diff({});
     INFO(result.out << result.err);
     CHECK(result.status == 0);
@@ -42,7 +42,7 @@ TEST_CASE("profile diff: the table says what is slower and warns of drift", "[cl
 }
 
 TEST_CASE("profile diff: --fail-if exits 9 only for a slowdown that is sure", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     struct Case {
         std::vector<std::string> limits;
         int status;
@@ -64,7 +64,7 @@ TEST_CASE("profile diff: --fail-if exits 9 only for a slowdown that is sure", "[
 }
 
 TEST_CASE("profile diff: --json has every row and limit", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     const ProcessResult result = pair.diff({"--json", "--fail-if", "shade:+3%"});
     CHECK(result.status == 9);
     const std::vector<nlohmann::json> events = json_lines(result.out);
@@ -92,7 +92,7 @@ TEST_CASE("profile diff: --json has every row and limit", "[cli][profile]") {
 }
 
 TEST_CASE("profile diff: different work is refused unless forced", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     nlohmann::ordered_json profile = made_profile({2});
     profile["environment"]["driver"] = "9.9";
     profile["environment"]["scene_hash"] = "other";
@@ -109,7 +109,7 @@ TEST_CASE("profile diff: different work is refused unless forced", "[cli][profil
 }
 
 TEST_CASE("profile diff: what is no profile is exit status 3, what cannot be meant 2", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     write_file(pair.folder / "text.json", "{\"version\": 1,");
     CHECK(pair.diff({}, "missing.json").status == 3);
     CHECK(pair.diff({}, "base.json", "text.json").status == 3);
@@ -127,7 +127,7 @@ TEST_CASE("profile diff: what is no profile is exit status 3, what cannot be mea
 }
 
 TEST_CASE("profile diff: few repetitions are warned of, and refused for limits", "[cli][profile]") {
-    const Pair pair;
+    const ProfilePair pair;
     write_file(pair.folder / "few.json", made_profile({.seed = 3, .repetitions = 3}).dump());
     const ProcessResult result = pair.diff({}, "few.json", "few.json");
     CHECK(result.status == 0);

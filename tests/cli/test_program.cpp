@@ -79,11 +79,11 @@ TEST_CASE("program: devices lists them and marks one", "[cli]") {
     CHECK(contains(text.out, "compute units"));
     CHECK(contains(text.out, "largest buffer"));
 
-    const ProcessResult json = run_sahl({"devices", "--json"});
-    CHECK(json.status == 0);
+    const ProcessResult lines = run_sahl({"devices", "--json"});
+    CHECK(lines.status == 0);
     int chosen = 0;
     int index = 0;
-    for (const nlohmann::json& device : json_lines(json.out)) {
+    for (const nlohmann::json& device : json_lines(lines.out)) {
         CHECK(device.at("event") == "device");
         CHECK(device.at("index") == index++);
         CHECK(device.at("max_allocation").get<std::uint64_t>() > 0);
@@ -92,7 +92,7 @@ TEST_CASE("program: devices lists them and marks one", "[cli]") {
     }
     CHECK(chosen == 1);
     // Common options may stand before the command.
-    CHECK(run_sahl({"--json", "devices"}).out == json.out);
+    CHECK(run_sahl({"--json", "devices"}).out == lines.out);
 }
 
 TEST_CASE("program: a device that is not there, or is not named clearly", "[cli]") {

@@ -25,7 +25,7 @@ ProcessResult render_in(const fs::path& folder, std::vector<std::string> argumen
     return result;
 }
 
-std::vector<std::string> files_in(const fs::path& folder) {
+std::vector<std::string> names_in(const fs::path& folder) {
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
         names.push_back(entry.path().filename());
@@ -39,7 +39,7 @@ TEST_CASE("render: the default image is named after the scene and lies in the cu
     CHECK(result.out == "");
     CHECK(result.err.starts_with("wrote cli_mirrors.png  48x32, depth 4, 1 spp, "));
     CHECK(contains(result.err, "rays/s\n"));
-    CHECK(files_in(folder.path()) == std::vector<std::string>{"cli_mirrors.png"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"cli_mirrors.png"});
     const Image image = read_image(folder.path() / "cli_mirrors.png");
     CHECK(image.width == 48);
     CHECK(image.height == 32);
@@ -63,7 +63,7 @@ TEST_CASE("render: -v says more", "[cli]") {
 TEST_CASE("render: a series of depths in one command is the images of single commands", "[cli]") {
     const TemporaryFolder folder;
     render_in(folder.path(), {mirrors(), "--depth", "0,2,7", "-o", "d{depth}.exr"});
-    CHECK(files_in(folder.path()) == std::vector<std::string>{"d0.exr", "d2.exr", "d7.exr"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"d0.exr", "d2.exr", "d7.exr"});
     for (const std::string depth : {"0", "2", "7"}) {
         render_in(folder.path(), {mirrors(), "--depth", depth, "-o", "single.exr"});
         CHECK(read_image(folder.path() / "single.exr").pixels ==
@@ -75,7 +75,7 @@ TEST_CASE("render: a series of depths in one command is the images of single com
 TEST_CASE("render: one depth fills in {depth}, the scene's too", "[cli]") {
     const TemporaryFolder folder;
     render_in(folder.path(), {mirrors(), "-o", "{depth}.png"});
-    CHECK(files_in(folder.path()) == std::vector<std::string>{"4.png"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"4.png"});
 }
 
 TEST_CASE("render: a crop is that part of the whole image, bit for bit", "[cli]") {
@@ -192,7 +192,7 @@ TEST_CASE("render: an error in the scene says where, exit status 3", "[cli]") {
     INFO(result.err);
     CHECK(result.status == 3);
     CHECK(contains(result.err, "sahl: error: bad.nff:2:7: "));
-    CHECK(files_in(folder.path()) == std::vector<std::string>{"bad.nff"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"bad.nff"});
 }
 
 TEST_CASE("render: a scene file that is not there, or is a folder, is exit status 3", "[cli]") {

@@ -24,7 +24,7 @@ using glm::dmat4;
 using glm::dvec3;
 using glm::vec3;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNever = std::numeric_limits<float>::infinity();
 // As for primitives of the world (test_primitives.cpp).
 constexpr double kRoundings = 8;
 
@@ -152,7 +152,7 @@ TEST_CASE("of instances in one place the lowest (instance, primitive) is hit, an
     CHECK(id_of(tracer.intersect(device_scene, {down})[0]) == Id{6, 1});
     const std::vector<Id> low{{0, 0}, {1, 1}, {1, 2}, {4, 1}, {4, 2}, {5, 1}, {5, 2}};
     const std::vector<Id> high{{6, 1}, {6, 2}};
-    const std::vector<TestWalk> walks = tracer.walk(device_scene, {up, down}, kInfinity);
+    const std::vector<TestWalk> walks = tracer.walk(device_scene, {up, down}, kNever);
     for (std::size_t i = 0; i < 2; ++i) {
         std::vector<Id> met, wanted = i == 0 ? low : high;
         const std::vector<Id>& rest = i == 0 ? high : low;
@@ -184,8 +184,8 @@ TEST_CASE("walks through instances meet as many surfaces as the oracle, shadow r
             rays.push_back({origin, vec3(glm::normalize(4.0 * in_ball(random) - dvec3(origin)))});
         }
         const DeviceScene scene = tracer.upload(soup.scene);
-        const std::vector<TestWalk> walks = tracer.walk(scene, rays, kInfinity);
-        const std::vector<Occlusion> met = tracer.occlusion(scene, rays, kInfinity);
+        const std::vector<TestWalk> walks = tracer.walk(scene, rays, kNever);
+        const std::vector<Occlusion> met = tracer.occlusion(scene, rays, kNever);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             std::vector<double> crossings;
             double margin = 1;

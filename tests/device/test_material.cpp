@@ -16,7 +16,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr const char* kKernels = R"(
+constexpr const char* kMaterialKernels = R"(
 #include "kernels/light.h"
 #include "kernels/material.h"
 #include "kernels/surface.h"
@@ -82,7 +82,7 @@ dvec3 reflect(const dvec3& d, const dvec3& n) { return d - 2 * glm::dot(d, n) * 
 }  // namespace
 
 TEST_CASE("Phong and Blinn are their formulas") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMaterialKernels);
     Random random(31);
     std::vector<Float4> ns, wi, wo;
     for (int i = 0; i < 20000; ++i) {
@@ -133,7 +133,7 @@ TEST_CASE("Phong and Blinn are their formulas") {
 }
 
 TEST_CASE("mirrored and refracted directions obey their laws") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMaterialKernels);
     Random random(32);
     std::vector<Float4> d, n;
     for (int i = 0; i < 20000; ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("mirrored and refracted directions obey their laws") {
 }
 
 TEST_CASE("total reflection begins at the critical angle") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMaterialKernels);
     std::vector<Float4> d, n;
     for (int i = 0; i < 2000; ++i) {
         // From glass, sin = 2/3 is critical; steps of 1e-6 around it.
@@ -184,7 +184,7 @@ TEST_CASE("total reflection begins at the critical angle") {
 }
 
 TEST_CASE("light arrives with its distance's attenuation") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMaterialKernels);
     device::DeviceLight point{{1, 2, 3}, SAHL_LIGHT_POINT, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0, {}, 0};
     device::DeviceLight sun{
         {0, 0.6F, 0.8F}, SAHL_LIGHT_DIRECTIONAL, {4, 5, 6}, 0, {0.5F, 0.25F, 0.125F}, 0, {}, 0};
@@ -208,7 +208,7 @@ TEST_CASE("light arrives with its distance's attenuation") {
 }
 
 TEST_CASE("rays start on the side of the surface that they leave to") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMaterialKernels);
     const std::vector<Float4> position(4, {1, 2, 3, 0}), off(4, {0, 0.25F, 0, 0});
     const std::vector<Float4> direction{{1, 1, 0, 0}, {1, -1, 0, 0}, {1, 1e-20F, 0, 0}, {1, -1e-20F, 0, 0}};
     const auto got = runner.map<float>("offset", 3, position, off, direction);

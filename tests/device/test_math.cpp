@@ -11,7 +11,7 @@
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kKernels = R"(
+constexpr const char* kMathKernels = R"(
 #include "kernels/power.h"
 kernel void powers(const global float* x, const global float* n, global float* out, const uint count) {
     TEST_FOR_EACH_GROUP(i, count) {
@@ -41,7 +41,7 @@ kernel void vectors(const global float4* a, const global float4* b, global float
 
 constexpr double kSmallestNormal = 0x1p-126;
 
-struct Float4 {
+struct FloatLanes {
     float x, y, z, w;
 };
 
@@ -50,7 +50,7 @@ struct Powers {
 };
 
 std::vector<Powers> run_powers(const std::vector<float>& x, const std::vector<float>& n) {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMathKernels);
     const std::vector<float> out = runner.map<float>("powers", 3, x, n);
     std::vector<Powers> result;
     for (std::size_t i = 0; i < x.size(); ++i) result.push_back({out[3 * i], out[3 * i + 1], out[3 * i + 2]});
@@ -139,15 +139,15 @@ TEST_CASE("exp2 below the normal numbers is 0, and infinite exponents of 0 stay 
 TEST_CASE("differences of products are right to 1.5 ulp however much cancels") {
     std::mt19937_64 random(2);
     std::uniform_real_distribution<float> unit(-1, 1);
-    std::vector<Float4> in;
+    std::vector<FloatLanes> in;
     for (int i = 0; i < 100000; ++i) {
         const float a = unit(random), b = unit(random);
         const float nudge = 1 + static_cast<float>(i % 8) * 0x1p-23f;
-        in.push_back(i % 2 ? Float4{a, b, unit(random), unit(random)} : Float4{a, b, a * nudge, b});
+        in.push_back(i % 2 ? FloatLanes{a, b, unit(random), unit(random)} : FloatLanes{a, b, a * nudge, b});
         if (i % 10 == 0) in.back() = {a, b, b, a};
     }
     in.push_back({3, 4, 2, 6});
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMathKernels);
     const std::vector<float> got = runner.map<float>("products", 1, in);
     double worst = 0;
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -169,15 +169,15 @@ TEST_CASE("differences of products are right to 1.5 ulp however much cancels") {
 TEST_CASE("vectors: unit lengths, cross and dot products") {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
-    std::vector<Float4> a{
+    std::vector<FloatLanes> a{
         {1, 0, 0, 0}, {0, 0, -0.0f, 0}, {3, -4, 0, 0}, {-1e-15f, 0, 0, 0}, {0, 1e15f, 0, 0}};
-    std::vector<Float4> b{{0, 1, 0, 0}, {1, 2, 3, 0}, {4, 3, 0, 0}, {0, 1e-15f, 0, 0}, {0, 0, 1e15f, 0}};
+    std::vector<FloatLanes> b{{0, 1, 0, 0}, {1, 2, 3, 0}, {4, 3, 0, 0}, {0, 1e-15f, 0, 0}, {0, 0, 1e15f, 0}};
     for (int i = 0; i < 20000; ++i) {
         const float scale = std::exp2(40 * unit(random));
         a.push_back({scale * unit(random), scale * unit(random), scale * unit(random), 0});
         b.push_back({unit(random), unit(random), unit(random), 0});
     }
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kMathKernels);
     const std::vector<float> out = runner.map<float>("vectors", 12, a, b);
     for (std::size_t i = 0; i < a.size(); ++i) {
         const float* got = &out[12 * i];

@@ -19,16 +19,17 @@ namespace {
 using glm::dvec3;
 
 // Roundings in a row that an intersection amounts to, in units of 2^-24 of the distance (rounding_of()).
-constexpr double kRoundings = 8;
+constexpr double kPrimitiveRoundings = 8;
 
-struct Place {
+struct PrimitivePlace {
     double size, offset;
 };
 
 /// Tiny and huge, at the origin and as far as 1e6 away.
-const std::vector<Place> kPlaces{{1, 0}, {1e-3, 0}, {1e3, 0}, {1, 1e3}, {1e-3, 1}, {1e3, 1e6}, {100, 1e6}};
+const std::vector<PrimitivePlace> kPlaces{{1, 0},    {1e-3, 0},  {1e3, 0},  {1, 1e3},
+                                          {1e-3, 1}, {1e3, 1e6}, {100, 1e6}};
 
-struct Score {
+struct PrimitiveScore {
     int rays = 0, sure = 0, hits = 0;
     int wrong = 0;           ///< another primitive than the oracle's, or none, or one where there is none
     std::string wrong_rays;  ///< some of them
@@ -41,21 +42,22 @@ struct Score {
 /// Errors of the surface at a sure hit. It is computed in double precision along the exact ray, so that only
 /// what was rounded on the way to the device is left: nothing of curved shapes, the corners of flat ones.
 void compare_surface(const Target& target, const Verdict& verdict, const TestRay& ray, const TestHit& hit,
-                     const TestSurface& surface, Score& score) {
+                     const TestSurface& surface, PrimitiveScore& score) {
     const dvec3 position = dvec3(ray.origin) + verdict.crossing.t * dvec3(ray.direction);
     const double cosine = std::abs(glm::dot(glm::normalize(dvec3(ray.direction)), verdict.crossing.ng));
-    const double unit = verdict.rounding / kRoundings / cosine;
+    const double unit = verdict.rounding / kPrimitiveRoundings / cosine;
     // Where the ray grazes or the target is hardly more than a rounding, the hit may be its other crossing.
     const double apart =
         std::abs(static_cast<double>(hit.t) - verdict.crossing.t) * glm::length(dvec3(ray.direction));
-    if (!verdict.one_face || cosine < 0.1 || unit > 1e-3 * target.size || apart > kRoundings * unit) return;
+    if (!verdict.one_face || cosine < 0.1 || unit > 1e-3 * target.size || apart > kPrimitiveRoundings * unit)
+        return;
     score.position = std::max(score.position, glm::distance(surface.position, position) / unit);
     score.ng = std::max(score.ng, glm::distance(surface.ng, verdict.crossing.ng) * target.size / unit);
     score.ns = std::max(score.ns, glm::distance(surface.ns, verdict.crossing.ns) * target.size / unit);
 }
 
-void compare(RayTracer& tracer, ShapeKind kind, Random& random, const Place& place, bool transformed,
-             Score& score) {
+void compare(RayTracer& tracer, ShapeKind kind, Random& random, const PrimitivePlace& place, bool transformed,
+             PrimitiveScore& score) {
     Scene scene;
     std::vector<Target> targets;
     const dvec3 center(glm::vec3(place.offset * unit_vector(random)));
@@ -72,7 +74,7 @@ void compare(RayTracer& tracer, ShapeKind kind, Random& random, const Place& pla
 
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const TestHit& hit = hits[i];
-        const Verdict verdict = judge(shapes, targets, rays[i], kRoundings);
+        const Verdict verdict = judge(shapes, targets, rays[i], kPrimitiveRoundings);
         ++score.rays;
         if (hit.hit()) {
             const Target& target = targets[hit.primitive];
@@ -105,12 +107,12 @@ void compare(RayTracer& tracer, ShapeKind kind, Random& random, const Place& pla
     }
 }
 
-Score compare_all(ShapeKind kind) {
+PrimitiveScore compare_all(ShapeKind kind) {
     RayTracer tracer;
     Random random(static_cast<unsigned>(kind) + 1);
-    Score score;
+    PrimitiveScore score;
     for (int round = 0; round < 4; ++round) {
-        for (const Place& place : kPlaces) {
+        for (const PrimitivePlace& place : kPlaces) {
             compare(tracer, kind, random, place, false, score);
             compare(tracer, kind, random, place, true, score);
         }
@@ -119,7 +121,7 @@ Score compare_all(ShapeKind kind) {
 }
 
 void check(ShapeKind kind) {
-    const Score score = compare_all(kind);
+    const PrimitiveScore score = compare_all(kind);
     CAPTURE(score.rays, score.sure, score.hits, score.position, score.ng, score.ns, score.wrong_rays);
     CHECK(score.sure > 0.6 * score.rays);
     CHECK(score.hits > 0.05 * score.rays);

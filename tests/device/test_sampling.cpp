@@ -11,7 +11,7 @@
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kKernels = R"(
+constexpr const char* kSamplingKernels = R"(
 #include "kernels/sampling.h"
 kernel void philox(const global uint4* counter, const global uint2* key, global uint4* out, const uint count) {
     TEST_FOR_EACH(i, count) { out[i] = philox4x32(counter[i], key[i]); }
@@ -67,24 +67,24 @@ TEST_CASE("Philox gives the known answers of its authors") {
     const std::vector<Words> wanted{{0x6627e8d5U, 0xe169c58dU, 0xbc57ac4cU, 0x9b00dbd8U},
                                     {0x408f276dU, 0x41c83b0eU, 0xa20bc7c6U, 0x6d5451fdU},
                                     {0xd16cfe09U, 0x94fdccebU, 0x5001e420U, 0x24126ea1U}};
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     CHECK(runner.map<Words>("philox", 1, counters, keys) == wanted);
 }
 
 TEST_CASE("uniform floats are in [0, 1) and as fine as promised") {
     const std::vector<std::uint32_t> bits{0, 0xffU, 0x100U, 0x80000000U, 0xffffffffU};
     const std::vector<float> wanted{0, 0, 0x1p-24f, 0.5f, 0x1.fffffep-1f};
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     CHECK(runner.map<float>("uniform_floats", 1, bits) == wanted);
 }
 
 TEST_CASE("one sample is the pixel's centre") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     for (const Point& point : samples(runner, 3, 65530, 3, 9, 1)) CHECK(point == Point{0.5f, 0.5f});
 }
 
 TEST_CASE("samples lie in their strata") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     for (const std::uint32_t spp : {2U, 3U, 4U, 7U, 16U, 60U, 64U, 1000U, 1024U, 16383U, 16384U}) {
         CAPTURE(spp);
         constexpr std::uint32_t kPixels = 6;
@@ -116,7 +116,7 @@ TEST_CASE("samples lie in their strata") {
 }
 
 TEST_CASE("samples are uniform over many pixels and independent between neighbours") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     constexpr std::uint32_t kSide = 256;
     for (const std::uint32_t spp : {2U, 5U, 8U}) {
         CAPTURE(spp);
@@ -142,7 +142,7 @@ TEST_CASE("samples are uniform over many pixels and independent between neighbou
 }
 
 TEST_CASE("a sample depends on its pixel in the image, the number of samples and the seed alone") {
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSamplingKernels);
     constexpr std::uint32_t kWidth = 40, kSpp = 4;
     const std::vector<Point> whole = samples(runner, 0, 0, kWidth, kWidth * 30, kSpp);
     // A crop from (11, 9), 13 wide.

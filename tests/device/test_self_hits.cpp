@@ -29,7 +29,7 @@ struct Object {
     double size;  ///< every direction from the centre meets a closed object
 };
 
-struct Score {
+struct SelfHitScore {
     int hits = 0, lit = 0, children = 0;
     int self_hits = 0;  ///< children that meet their own surface at once
     int edge_hits =
@@ -58,7 +58,7 @@ std::vector<TestRay> camera_rays(Random& random, const Object& object, std::size
     return rays;
 }
 
-void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t count, Score& score) {
+void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t count, SelfHitScore& score) {
     const oracle::Oracle oracle(object.scene);
     const DeviceScene scene = tracer.upload(object.scene);
     const std::vector<TestRay> rays = camera_rays(random, object, count);
@@ -119,11 +119,11 @@ void trace(RayTracer& tracer, Random& random, const Object& object, std::size_t 
     }
 }
 
-struct Place {
+struct StartPlace {
     double size, offset;
 };
 
-std::vector<Object> objects(Random& random, const Place& place) {
+std::vector<Object> objects(Random& random, const StartPlace& place) {
     const dvec3 center(vec3(place.offset * unit_vector(random)));
     const double size = static_cast<double>(static_cast<float>(place.size));
     const Material material = mirror_and_glass();
@@ -192,13 +192,13 @@ std::vector<Object> objects(Random& random, const Place& place) {
 TEST_CASE("no ray meets the surface that it starts on, at scales of 1e-3 to 1e3 and offsets up to 1e6") {
     RayTracer tracer;
     Random random(41);
-    Score score;
+    SelfHitScore score;
     const std::size_t rays = full_tests() ? 200'000 : 12'000;
-    for (const Place& place :
-         std::vector<Place>{{1, 0}, {1e-3, 0}, {1e3, 0}, {1, 1e3}, {1e-3, 1}, {1e3, 1e6}, {100, 1e6}}) {
+    for (const StartPlace& place :
+         std::vector<StartPlace>{{1, 0}, {1e-3, 0}, {1e3, 0}, {1, 1e3}, {1e-3, 1}, {1e3, 1e6}, {100, 1e6}}) {
         for (const Object& object : objects(random, place)) {
             CAPTURE(object.name, place.size, place.offset);
-            Score here;
+            SelfHitScore here;
             trace(tracer, random, object, rays, here);
             CAPTURE(here.hits, here.lit, here.children);
             CHECK(here.self_hits == 0);

@@ -14,7 +14,7 @@
 namespace sahl::tests {
 namespace {
 
-constexpr const char* kKernels = R"(
+constexpr const char* kSimdKernels = R"(
 #include "kernels/simd.h"
 kernel void masks(const global float* a, const global float* b, global uint* out, const uint count) {
     TEST_FOR_EACH(i, count) {
@@ -92,7 +92,7 @@ TEST_CASE("masks are the comparisons, lane by lane, on every code path") {
     const std::size_t count = a.size() / 16;
     for (const std::string option : {"", "-DSAHL_PLAIN_OPENCL", "-DSAHL_NO_AVX512"}) {
         CAPTURE(option);
-        KernelRunner runner(kKernels, option);
+        KernelRunner runner(kSimdKernels, option);
         Buffer out(runner.device(), 4 * count * sizeof(std::uint32_t), "masks");
         runner.run("masks", count, runner.upload(a), runner.upload(b), out);
         const auto got = KernelRunner::download<std::uint32_t>(out, 4 * count);
@@ -119,7 +119,7 @@ TEST_CASE("lanes of sixteen rays are compared, chosen and reduced as one by one,
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
     for (const std::string option : {"", "-DSAHL_PLAIN_OPENCL", "-DSAHL_NO_AVX512"}) {
         CAPTURE(option);
-        KernelRunner runner(kKernels, option);
+        KernelRunner runner(kSimdKernels, option);
         Buffer out(runner.device(), words * count * sizeof(std::uint32_t), "groups");
         runner.run("groups", count, runner.upload(a), runner.upload(b), out);
         const auto got = KernelRunner::download<std::uint32_t>(out, words * count);
@@ -164,7 +164,7 @@ TEST_CASE("octants permute the bits of all masks, and lanes are numbered from th
         masks.push_back(0x80000000U | 1U << bit);
         masks.push_back(1U << bit | (1U << bit) - 1U);
     }
-    KernelRunner runner(kKernels);
+    KernelRunner runner(kSimdKernels);
     const auto got = runner.map<std::uint32_t>("lanes", 10, masks);
     for (std::size_t i = 0; i < masks.size(); ++i) {
         for (std::uint32_t octant = 0; octant < 8; ++octant) {

@@ -24,18 +24,18 @@ using glm::dvec3;
 using glm::vec3;
 
 // As for primitives alone (test_primitives.cpp).
-constexpr double kRoundings = 8;
+constexpr double kTraversalRoundings = 8;
 
-struct Score {
+struct TraversalScore {
     int sure = 0, wrong = 0;
 };
 
 /// Every `step`-th ray's hit against the oracle's.
 void compare_with_oracle(const Soup& soup, const std::vector<TestRay>& rays, const std::vector<TestHit>& hits,
-                         std::size_t step, Score& score) {
+                         std::size_t step, TraversalScore& score) {
     const std::vector<oracle::PlacedShape> shapes = oracle::place_shapes(soup.scene);
     for (std::size_t i = 0; i < rays.size(); i += step) {
-        const Verdict verdict = judge(shapes, soup.targets, rays[i], kRoundings);
+        const Verdict verdict = judge(shapes, soup.targets, rays[i], kTraversalRoundings);
         if (!verdict.sure) continue;
         ++score.sure;
         const double t = static_cast<double>(hits[i].t), slack = 4 * 0x1p-24 * t;
@@ -83,7 +83,7 @@ TEST_CASE("every traversal finds what a search of all leaves and the oracle find
     RayTracer tracer;
     Random random(71);
     const std::size_t count = full_tests() ? 20'000 : 4000;
-    Score score;
+    TraversalScore score;
     for (int round = 0; round < (full_tests() ? 30 : 1); ++round) {
         for (const auto& [soup_name, soup] : soups(random)) {
             DeviceScene scene = tracer.upload(soup.scene);

@@ -9,7 +9,7 @@
 namespace sahl {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Image filled(int width, int height, float value) {
     const auto count = static_cast<std::size_t>(3 * width * height);
@@ -37,7 +37,7 @@ TEST_CASE("compare: equal images", "[compare]") {
     CHECK(result.max_difference == 0);
     CHECK(result.mean_difference == 0);
     CHECK(result.mse == 0);
-    CHECK(result.psnr == inf);
+    CHECK(result.psnr == infinity);
     CHECK((result.pixels == 20));
     CHECK(result.pixels_over == 0);
 }
@@ -91,9 +91,9 @@ TEST_CASE("compare: NaN and infinity are over every threshold", "[compare]") {
         at(b, 1, 0, 2) = odd;
         for (const Comparison& result : {compare(a, b, 1e30F), compare(b, a, 1e30F), compare(b, b, 1e30F)}) {
             CHECK(result.pixels_over == 1);
-            CHECK(result.max_difference == inf);
-            CHECK(result.mse == inf);
-            CHECK(result.psnr == -inf);
+            CHECK(result.max_difference == infinity);
+            CHECK(result.mse == infinity);
+            CHECK(result.psnr == -infinity);
             CHECK(result.worst_x == 1);
         }
     }

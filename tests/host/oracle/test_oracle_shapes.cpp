@@ -15,7 +15,7 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 
-bool same(const dvec3& a, const dvec3& b, double tolerance = 1e-12) {
+bool equal_points(const dvec3& a, const dvec3& b, double tolerance = 1e-12) {
     return glm::distance(a, b) < tolerance;
 }
 
@@ -29,12 +29,12 @@ TEST_CASE("oracle: a sphere is hit where the ray enters and where it leaves", "[
     const auto outside = first_hit(scene, {{1, 2, 13}, {0, 0, -2}});
     REQUIRE(outside);
     CHECK(outside->t == Approx(4));
-    CHECK(same(outside->ng, {0, 0, 1}));
+    CHECK(equal_points(outside->ng, {0, 0, 1}));
     CHECK(outside->edge_distance == Approx(1));
     const auto inside = first_hit(scene, {{1, 2, 3}, {0, 1, 0}});
     REQUIRE(inside);
     CHECK(inside->t == Approx(2));
-    CHECK(same(inside->ng, {0, 1, 0}));
+    CHECK(equal_points(inside->ng, {0, 1, 0}));
     // From its own surface: outwards nothing, inwards the far side.
     CHECK_FALSE(first_hit(scene, {{1, 2, 5}, {0, 0, 1}}, id));
     const auto through = first_hit(scene, {{1, 2, 5}, {0, 0, -1}}, id);
@@ -66,8 +66,8 @@ TEST_CASE("oracle: triangle barycentrics, winding and interpolated normals", "[o
     REQUIRE(hit);
     CHECK(hit->uv.x == Approx(0.25));
     CHECK(hit->uv.y == Approx(0.5));
-    CHECK(same(hit->ng, {0, 0, 1}));
-    CHECK(same(hit->ns, glm::normalize(dvec3(0.25, 0.5, 0.25))));
+    CHECK(equal_points(hit->ng, {0, 0, 1}));
+    CHECK(equal_points(hit->ns, glm::normalize(dvec3(0.25, 0.5, 0.25))));
     CHECK_FALSE(first_hit(scene, {{2.1, 2, 1}, {0, 0, -1}}));
     CHECK_FALSE(first_hit(scene, {{1, 2, 0}, {0, 0, -1}}, 0));
 }
@@ -77,7 +77,7 @@ TEST_CASE("oracle: a mirrored triangle keeps the front that its object had", "[o
     add_triangle(scene, {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {}, glm::scale(dmat4(1), dvec3(-1, 1, 1)));
     const auto hit = first_hit(scene, {{0, 0, 1}, {0, 0, -1}});
     REQUIRE(hit);
-    CHECK(same(hit->ng, {0, 0, 1}));
+    CHECK(equal_points(hit->ng, {0, 0, 1}));
 }
 
 TEST_CASE("oracle: a concave polygon is not hit in its notch", "[oracle]") {
@@ -91,7 +91,7 @@ TEST_CASE("oracle: a concave polygon is not hit in its notch", "[oracle]") {
     CHECK_FALSE(hits(2, 2));
     CHECK_FALSE(hits(-0.1, 1));
     CHECK_FALSE(hits(1.5, 3.5));
-    CHECK(same(first_hit(scene, {{0.5, 0.5, 2}, {0, 0, -1}})->ng, {0, 0, 1}));
+    CHECK(equal_points(first_hit(scene, {{0.5, 0.5, 2}, {0, 0, -1}})->ng, {0, 0, 1}));
 }
 
 TEST_CASE("oracle: cones and cylinders are open", "[oracle]") {
@@ -100,7 +100,7 @@ TEST_CASE("oracle: cones and cylinders are open", "[oracle]") {
     const auto hit = first_hit(scene, {{5, 0, 1}, {-1, 0, 0}});
     REQUIRE(hit);
     CHECK(hit->t == Approx(4));
-    CHECK(same(hit->ng, glm::normalize(dvec3(1, 0, 1))));
+    CHECK(equal_points(hit->ng, glm::normalize(dvec3(1, 0, 1))));
     CHECK_FALSE(first_hit(scene, {{5, 0, 2.1}, {-1, 0, 0}}));
     CHECK_FALSE(first_hit(scene, {{5, 0, -0.1}, {-1, 0, 0}}));
     const auto from_below = first_hit(scene, {{0.5, 0, -1}, {0, 0, 1}});  // in through the missing base
@@ -118,7 +118,7 @@ TEST_CASE("oracle: cones and cylinders are open", "[oracle]") {
     CHECK_FALSE(first_hit(pipe, {{0.5, -1, 0}, {0, 1, 0}}));
     const auto wall = first_hit(pipe, {{0, 1, 0}, {0, 0, 1}});
     REQUIRE(wall);
-    CHECK(same(wall->ng, {0, 0, 1}));
+    CHECK(equal_points(wall->ng, {0, 0, 1}));
 }
 
 TEST_CASE("oracle: of two hits at the same distance the lower id wins", "[oracle]") {
@@ -150,7 +150,7 @@ TEST_CASE("oracle: transformed spheres and cones", "[oracle]") {
         const auto hit = first_hit(scene, ray);
         if (!hit) continue;
         ++hits;
-        CHECK(same(hit->position, ray.origin + hit->t * ray.direction));
+        CHECK(equal_points(hit->position, ray.origin + hit->t * ray.direction));
         const auto surface = [&](const dvec3& world) {
             const dvec3 p(glm::inverse(transform) * glm::dvec4(world, 1));
             if (round % 2 == 0) return glm::distance(p, dvec3(0.1, 0.2, 0.3)) - 0.8;
@@ -163,7 +163,7 @@ TEST_CASE("oracle: transformed spheres and cones", "[oracle]") {
             step[axis] = 1e-6;
             gradient[axis] = surface(hit->position + step) - surface(hit->position - step);
         }
-        CHECK(same(hit->ng, glm::normalize(gradient), 1e-6));
+        CHECK(equal_points(hit->ng, glm::normalize(gradient), 1e-6));
     }
     CHECK(hits > 50);
 }

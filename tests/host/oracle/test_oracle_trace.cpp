@@ -13,7 +13,9 @@ namespace {
 
 using glm::dvec3;
 
-bool same(const dvec3& a, const dvec3& b, double tolerance = 1e-6) { return glm::distance(a, b) < tolerance; }
+bool equal_directions(const dvec3& a, const dvec3& b, double tolerance = 1e-6) {
+    return glm::distance(a, b) < tolerance;
+}
 
 dvec3 sum(const PathRecord& record) {
     dvec3 total(0);
@@ -30,7 +32,7 @@ TEST_CASE("oracle: diffuse light falls off by cosine and attenuation", "[oracle]
     add_square(scene, 0, 10, matte({0.5F, 0.25F, 1}));
     scene.lights = {point_light({3, 0, 4}, glm::vec3(2), {1, 0.5F, 0.25F})};
     const dvec3 color = color_at_depth(scene, {{0, 0, 1}, {0, 0, -1}}, 0);
-    CHECK(same(color, 2 * 0.8 / (1 + 0.5 * 5 + 0.25 * 25) * dvec3(0.5, 0.25, 1)));
+    CHECK(equal_directions(color, 2 * 0.8 / (1 + 0.5 * 5 + 0.25 * 25) * dvec3(0.5, 0.25, 1)));
 }
 
 TEST_CASE("oracle: highlights by Phong and Blinn", "[oracle]") {
@@ -103,9 +105,9 @@ TEST_CASE("oracle: transparent things in the way take their factor once a surfac
     const Ray ray{{4, 0, 5}, {-4, 0, -5}};
     CHECK(color_at_depth(scene, ray, 0).x == Approx(1));
     add_square(scene, 2, 1, glass({0.5F, 0.25F, 1}, 1.5F));
-    CHECK(same(color_at_depth(scene, ray, 0), {0.5, 0.25, 1}));
+    CHECK(equal_directions(color_at_depth(scene, ray, 0), {0.5, 0.25, 1}));
     add_sphere(scene, {{0, 0, 3.5}, 0.5}, glass(glm::vec3(0.5F), 1.5F));
-    CHECK(same(color_at_depth(scene, ray, 0), {0.125, 0.0625, 0.25}));
+    CHECK(equal_directions(color_at_depth(scene, ray, 0), {0.125, 0.0625, 0.25}));
     add_square(scene, 6, 1, matte(glm::vec3(1)));  // behind the light
     CHECK(color_at_depth(scene, ray, 0).x == Approx(0.125));
     add_square(scene, 4.5F, 1, matte(glm::vec3(1)));
@@ -115,10 +117,12 @@ TEST_CASE("oracle: transparent things in the way take their factor once a surfac
 TEST_CASE("oracle: camera rays run from edge to edge of the image", "[oracle]") {
     const Camera camera{{1, 2, 3}, {1, 2, -7}, {0, 1, 0}, 60};
     const Resolution resolution{200, 100};
-    CHECK(same(camera_ray(camera, resolution, 100, 50).direction, {0, 0, -1}));
+    CHECK(equal_directions(camera_ray(camera, resolution, 100, 50).direction, {0, 0, -1}));
     const double half = std::tan(glm::radians(30.0));
-    CHECK(same(camera_ray(camera, resolution, 100, 0).direction, glm::normalize(dvec3(0, half, -1))));
-    CHECK(same(camera_ray(camera, resolution, 200, 50).direction, glm::normalize(dvec3(2 * half, 0, -1))));
+    CHECK(equal_directions(camera_ray(camera, resolution, 100, 0).direction,
+                           glm::normalize(dvec3(0, half, -1))));
+    CHECK(equal_directions(camera_ray(camera, resolution, 200, 50).direction,
+                           glm::normalize(dvec3(2 * half, 0, -1))));
 }
 
 TEST_CASE("oracle: pixels near an edge are found", "[oracle]") {

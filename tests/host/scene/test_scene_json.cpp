@@ -12,7 +12,7 @@
 namespace sahl::tests {
 namespace {
 
-glm::dvec3 apply(const glm::dmat4& m, glm::dvec3 p) { return m * glm::dvec4(p, 1); }
+glm::dvec3 transformed(const glm::dmat4& m, glm::dvec3 p) { return m * glm::dvec4(p, 1); }
 
 bool near(glm::dvec3 a, glm::dvec3 b) { return glm::length(a - b) < 1e-12; }
 
@@ -210,23 +210,23 @@ TEST_CASE("A Sahl scene: transforms", "[scene][json]") {
     const Scene scene = load_scene(own_scene("all_features.json"));
     const auto matrix = [&](std::size_t i) { return scene.transforms[scene.primitives[i].transform]; };
     // Scaled, turned by 90° about z, then moved by the group.
-    CHECK(near(apply(matrix(12), {1, 0, 0}), {1, 3, 3}));
-    CHECK(near(apply(matrix(12), {0, 1, 0}), {-1, 2, 3}));
-    CHECK(near(apply(matrix(12), {0, 0, 1}), {1, 2, 6}));
-    CHECK(apply(matrix(13), {0, 0, 0}) == glm::dvec3(1, 2, 3));
+    CHECK(near(transformed(matrix(12), {1, 0, 0}), {1, 3, 3}));
+    CHECK(near(transformed(matrix(12), {0, 1, 0}), {-1, 2, 3}));
+    CHECK(near(transformed(matrix(12), {0, 0, 1}), {1, 2, 6}));
+    CHECK(transformed(matrix(13), {0, 0, 0}) == glm::dvec3(1, 2, 3));
     // A matrix as it was written, rows.
     const glm::dmat4 written(glm::dvec4(1, 0, 0.5, 0), glm::dvec4(2, 1, 0, 0), glm::dvec4(0, 0, 1, 0),
                              glm::dvec4(4, 5, 6, 1));
     CHECK(matrix(14) == written);
     // look_at: the origin at `from`, +z towards the point, +y near up.
-    CHECK(apply(matrix(15), {0, 0, 0}) == glm::dvec3(1, 0, 0));
-    CHECK(near(apply(matrix(15), {0, 0, 5}), {1, 0, 5}));
-    CHECK(near(apply(matrix(15), {0, 1, 0}), {1, 1, 0}));
-    CHECK(near(apply(matrix(15), {1, 0, 0}), {2, 0, 0}));
+    CHECK(transformed(matrix(15), {0, 0, 0}) == glm::dvec3(1, 0, 0));
+    CHECK(near(transformed(matrix(15), {0, 0, 5}), {1, 0, 5}));
+    CHECK(near(transformed(matrix(15), {0, 1, 0}), {1, 1, 0}));
+    CHECK(near(transformed(matrix(15), {1, 0, 0}), {2, 0, 0}));
     const Scene tilted = parse_json(
         R"({"type": "sphere", "transform": {"look_at": [3, 1, 0], "from": [0, 1, 0], "up": [0, 3, 3]}})");
-    CHECK(near(apply(tilted.transforms[1], {0, 0, 1}), {1, 1, 0}));
-    CHECK(near(apply(tilted.transforms[1], {0, 1, 0}), {0, 1 + std::sqrt(0.5), std::sqrt(0.5)}));
+    CHECK(near(transformed(tilted.transforms[1], {0, 0, 1}), {1, 1, 0}));
+    CHECK(near(transformed(tilted.transforms[1], {0, 1, 0}), {0, 1 + std::sqrt(0.5), std::sqrt(0.5)}));
 }
 
 TEST_CASE("A single matrix reaches the scene to the bit", "[scene][json]") {
@@ -256,7 +256,8 @@ TEST_CASE("A Sahl scene: groups and instances", "[scene][json]") {
     CHECK(scene.groups[0].primitive_count == 1);
     REQUIRE(scene.groups[0].instances.size() == 1);
     CHECK(scene.groups[0].instances[0].group == 1);
-    CHECK(apply(scene.transforms[scene.groups[0].instances[0].transform], {0, 0, 0}) == glm::dvec3(1, 0, 0));
+    CHECK(transformed(scene.transforms[scene.groups[0].instances[0].transform], {0, 0, 0}) ==
+          glm::dvec3(1, 0, 0));
     CHECK(scene.groups[1].name == "post");
     CHECK(scene.groups[1].first_primitive == 17);
     CHECK(scene.groups[1].primitive_count == 1);
@@ -268,7 +269,7 @@ TEST_CASE("A Sahl scene: groups and instances", "[scene][json]") {
 
     REQUIRE(scene.instances.size() == 2);
     CHECK(scene.instances[0].group == 0);
-    CHECK(apply(scene.transforms[scene.instances[0].transform], {1, 1, 1}) == glm::dvec3(3, 4, 5));
+    CHECK(transformed(scene.transforms[scene.instances[0].transform], {1, 1, 1}) == glm::dvec3(3, 4, 5));
     CHECK(scene.instances[1].group == 0);
     CHECK(scene.instances[1].transform == 0);
 }

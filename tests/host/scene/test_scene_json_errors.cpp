@@ -12,15 +12,15 @@
 namespace sahl::tests {
 namespace {
 
-struct Case {
+struct BrokenScene {
     std::string text;
     std::string place;
     std::string says;
 };
 
 template <typename Parse>
-void check_cases(const std::vector<Case>& cases, Parse parse) {
-    for (const Case& c : cases) {
+void check_cases(const std::vector<BrokenScene>& cases, Parse parse) {
+    for (const BrokenScene& c : cases) {
         INFO(c.text);
         try {
             parse(c.text);
@@ -34,13 +34,13 @@ void check_cases(const std::vector<Case>& cases, Parse parse) {
 }
 
 // The members of the file behind "sahl", from column 14 on.
-void check_file(const std::vector<Case>& cases) {
+void check_file(const std::vector<BrokenScene>& cases) {
     check_cases(cases, [](const std::string& text) {
         return read_scene_json("scene.json", R"({"sahl": 1, )" + text + "}");
     });
 }
 
-void check_objects(const std::vector<Case>& cases) {
+void check_objects(const std::vector<BrokenScene>& cases) {
     check_cases(cases, [](const std::string& text) { return parse_json(text); });
 }
 

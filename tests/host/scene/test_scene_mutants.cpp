@@ -31,7 +31,7 @@ constexpr int mutants_per_loader = 10'000;
 constexpr std::size_t max_bytes = std::size_t{1} << 30;
 constexpr std::size_t max_seconds = 5;
 
-std::string read(const fs::path& path) {
+std::string text_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -187,7 +187,7 @@ struct Counts {
 
 /// Mutants 0…count - 1 of the scene `seed`, in a child process that each mutant may bring down.
 void try_mutants(const fs::path& seed, int count, Counts& counts) {
-    const std::string text = read(seed);
+    const std::string text = text_of(seed);
     REQUIRE(text.size() > 100);
     const fs::path path = seed.parent_path() / ("mutant" + seed.extension().string());
     const auto mutant = [&](int number) { return Mutator(static_cast<unsigned>(number)).mutate(text); };
