@@ -108,16 +108,25 @@ typedef struct {
 /// on top. Writes eight entries from `end` on, however many are met. Returns the stack's new end.
 static inline WaitingChild* push_children(const global BvhNode* node, float8 enter, float8 leave,
                                           const RayBoxTest* test, WaitingChild* end) {
-#ifdef SAHL_AVX512
+#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
     const int8 slots = convert_int8(as_uchar8(vload2(0, test->slots)));
     enter = __builtin_ia32_permvarsf256(enter, slots);
     leave = __builtin_ia32_permvarsf256(leave, slots);
-    const int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
+    int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
     const uint met = mask8_le(enter, leave);
+#ifdef SAHL_AVX2
+    const int8 places = set_bits8(met);
+    child = __builtin_ia32_permvarsi256(child, places);
+    enter = __builtin_ia32_permvarsf256(enter, places);
+#endif
     const uint16 pairs = __builtin_shufflevector(as_uint8(child), as_uint8(enter), 0, 8, 1, 9, 2, 10, 3, 11,
                                                  4, 12, 5, 13, 6, 14, 7, 15);
+#ifdef SAHL_AVX2
+    vstore16(pairs, 0, (uint*)end);
+#else
     vstore8(as_ulong8(__builtin_ia32_compressdi512_mask(as_long8(pairs), (long8)(0), (uchar)met)), 0,
             (ulong*)end);
+#endif
     return end + popcount(met);
 #else
     uint order = permute_by_octant(mask8_le(enter, leave), test->octant);

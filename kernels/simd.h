@@ -93,11 +93,30 @@ static inline uint mask16_ge(float16 a, float16 b) { return less_equal16(b, a); 
 #else
 
 typedef int16 Lanes16;
+#ifdef SAHL_AVX2
+// In assembly, for LLVM 15 knows too much of comparisons: it packs the masks of those that are combined into
+// bytes and unpacks what results, which takes longer than the comparisons.
+#define SAHL_DEFINE_COMPARISON(NAME, LANES, INSTRUCTION)       \
+    SAHL_OVERLOAD int8 NAME(LANES##8 a, LANES##8 b) {          \
+        int8 mask;                                             \
+        __asm__(INSTRUCTION : "=x"(mask) : "x"(a), "x"(b));    \
+        return mask;                                           \
+    }                                                          \
+    SAHL_OVERLOAD Lanes16 NAME##16(LANES##16 a, LANES##16 b) { \
+        return (Lanes16)(NAME(a.lo, b.lo), NAME(a.hi, b.hi));  \
+    }
+SAHL_DEFINE_COMPARISON(equal, float, "vcmpeqps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(less, float, "vcmpltps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(less_equal, float, "vcmpleps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(equal, int, "vpcmpeqd %2, %1, %0")
+SAHL_DEFINE_COMPARISON(less, int, "vpcmpgtd %1, %2, %0")
+#else
 SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return a == b; }
 SAHL_OVERLOAD Lanes16 less16(float16 a, float16 b) { return a < b; }
 SAHL_OVERLOAD Lanes16 less_equal16(float16 a, float16 b) { return a <= b; }
 SAHL_OVERLOAD Lanes16 equal16(int16 a, int16 b) { return a == b; }
 SAHL_OVERLOAD Lanes16 less16(int16 a, int16 b) { return a < b; }
+#endif
 SAHL_OVERLOAD float16 select16(Lanes16 lanes, float16 a, float16 b) { return select(b, a, lanes); }
 SAHL_OVERLOAD int16 select16(Lanes16 lanes, int16 a, int16 b) { return select(b, a, lanes); }
 static inline bool any16(Lanes16 lanes) { return sign_bits8(lanes.lo | lanes.hi) != 0u; }
@@ -111,6 +130,30 @@ static inline Lanes16 not16(Lanes16 lanes) { return ~lanes; }
 static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
 static inline uint mask16_le(float16 a, float16 b) { return bits16(a <= b); }
 static inline uint mask16_ge(float16 a, float16 b) { return bits16(a >= b); }
+
+#endif
+
+#ifdef SAHL_AVX2
+
+// Byte k of entry m: the place of m's k-th set bit, from the lowest on. AVX2 cannot compress, and what BMI2
+// has instead is slow on some processors.
+#define SAHL_BIT_PLACE(m, bit) \
+    ((((m) >> bit) & 1u) ? (ulong)bit << 8 * __builtin_popcount((m) & ((1u << bit) - 1u)) : 0ul)
+#define SAHL_BIT_PLACES(m)                                                                       \
+    (SAHL_BIT_PLACE(m, 1) | SAHL_BIT_PLACE(m, 2) | SAHL_BIT_PLACE(m, 3) | SAHL_BIT_PLACE(m, 4) | \
+     SAHL_BIT_PLACE(m, 5) | SAHL_BIT_PLACE(m, 6) | SAHL_BIT_PLACE(m, 7))
+#define SAHL_BIT_PLACES4(m) \
+    SAHL_BIT_PLACES(m), SAHL_BIT_PLACES((m) + 1u), SAHL_BIT_PLACES((m) + 2u), SAHL_BIT_PLACES((m) + 3u)
+#define SAHL_BIT_PLACES16(m) \
+    SAHL_BIT_PLACES4(m), SAHL_BIT_PLACES4((m) + 4u), SAHL_BIT_PLACES4((m) + 8u), SAHL_BIT_PLACES4((m) + 12u)
+#define SAHL_BIT_PLACES64(m)                                                          \
+    SAHL_BIT_PLACES16(m), SAHL_BIT_PLACES16((m) + 16u), SAHL_BIT_PLACES16((m) + 32u), \
+        SAHL_BIT_PLACES16((m) + 48u)
+constant ulong bit_places[256] = {SAHL_BIT_PLACES64(0u), SAHL_BIT_PLACES64(64u), SAHL_BIT_PLACES64(128u),
+                                  SAHL_BIT_PLACES64(192u)};
+
+/// Where the set bits of an 8-bit mask are, from the lowest on; elements behind them are 0.
+static inline int8 set_bits8(uint mask) { return convert_int8(as_uchar8(bit_places[mask])); }
 
 #endif
 
