@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -129,6 +130,30 @@ TEST_CASE("profile: the table names every kernel within 120 columns", "[cli]") {
         CHECK(contains(reports().text, row.at("kernel").get<std::string>()));
     CHECK(contains(reports().text, "unattributed"));
     CHECK(contains(reports().text, "recording adds"));
+}
+
+TEST_CASE("profile: the table's numbers are those of the JSON", "[cli]") {
+    const json& rows = reports().profile.at("rows");
+    const auto row = std::find_if(rows.begin(), rows.end(), [](const json& candidate) {
+        return candidate.at("kernel") == "shade" && candidate.at("generation") == 0;
+    });
+    REQUIRE(row != rows.end());
+    const auto fixed = [&](const char* key, int digits, double unit = 1) {
+        return fmt::format("{:.{}f}", unit * row->at(key).get<double>(), digits);
+    };
+    std::istringstream lines(reports().text);
+    std::string line;
+    while (std::getline(lines, line) && !line.starts_with("  0 shade ")) {
+    }
+    std::istringstream words(line);
+    const std::vector<std::string> cells(std::istream_iterator<std::string>(words), {});
+    REQUIRE(cells.size() == 15);
+    CHECK(cells[2] == fmt::format("{}", row->at("launches").get<int>()));
+    CHECK(cells[5] == fixed("survival_percent", 1));
+    CHECK(cells[6] == fixed("ms_median", 3));
+    CHECK(cells[7] == fixed("ms_p95", 3));
+    CHECK(cells[8] == fixed("wall_percent", 1));
+    CHECK(cells[11] == fixed("active_lanes", 1, 100));
 }
 
 TEST_CASE("profile: the trace has a slice for each launch, tracks with names and whole flows", "[cli]") {
