@@ -71,6 +71,30 @@ struct EarlyEncoder::Impl {
         }
     }
 
+    void set_finished(int finished_rows) {
+        const std::lock_guard lock(mutex);
+        if (failure) std::rethrow_exception(failure);
+        rows = finished_rows;
+        if (rows >= wanted_rows) changed.notify_all();
+    }
+
+    /// What is left is encoded here, as fast as can be. Returns the file.
+    std::vector<unsigned char> finish(const Metadata& metadata) {
+        const HostStep step("encode");
+        {
+            const std::lock_guard lock(mutex);
+            wait_ns = monotonic_ns();
+        }
+        set_finished(layout.height);
+        thread.request_stop();
+        thread.join();
+        if (failure) std::rethrow_exception(failure);
+        encode_rows({});
+        std::vector<unsigned char> file = encoder->finish(metadata);
+        add_hidden_step("encode", hidden_ns);
+        return file;
+    }
+
     const Film& film;
     int samples;
     std::filesystem::path path;
@@ -99,31 +123,11 @@ EarlyEncoder::EarlyEncoder(const Film& film, int samples, const std::filesystem:
 
 EarlyEncoder::~EarlyEncoder() = default;
 
-void EarlyEncoder::set_finished(int rows) {
-    const std::lock_guard lock(impl_->mutex);
-    if (impl_->failure) std::rethrow_exception(impl_->failure);
-    impl_->rows = rows;
-    if (rows >= impl_->wanted_rows) impl_->changed.notify_all();
-}
+void EarlyEncoder::set_finished(int rows) { impl_->set_finished(rows); }
 
 void EarlyEncoder::write(const Metadata& metadata) {
-    std::vector<unsigned char> file;
-    {
-        const HostStep step("encode");
-        {
-            const std::lock_guard lock(impl_->mutex);
-            impl_->wait_ns = monotonic_ns();
-        }
-        set_finished(impl_->layout.height);
-        // What is left is done here, as fast as can be.
-        impl_->thread.request_stop();
-        impl_->thread.join();
-        if (impl_->failure) std::rethrow_exception(impl_->failure);
-        impl_->encode_rows({});
-        file = impl_->encoder->finish(metadata);
-        add_hidden_step("encode", impl_->hidden_ns);
-    }
     const HostStep step("write");
+    const std::vector<unsigned char> file = impl_->finish(metadata);
     write_file(impl_->path, std::as_bytes(std::span(file)));
 }
 

@@ -50,20 +50,25 @@ RenderStatistics run_frame(Device& device, Renderer& renderer, const FrameJob& j
     const int samples = settings.samples ? settings.samples->count() : settings.spp;
     Image image;
     RenderStatistics statistics;
+    std::optional<EarlyEncoder> encoder;
     if (can_encode_early(job.output)) {
-        EarlyEncoder encoder(*film, samples, job.output, job.encoding);
+        {
+            const HostStep step("encode");
+            encoder.emplace(*film, samples, job.output, job.encoding);
+        }
         statistics = renderer.render(settings, *film, [&](std::uint64_t done, std::uint64_t) {
             const HostStep step("encode");
-            encoder.set_finished(
+            encoder->set_finished(
                 finished_rows(done / static_cast<std::uint64_t>(samples), size.width, size.height));
         });
-        encoder.write(job.encoding.metadata);
+        encoder->write(job.encoding.metadata);
     } else {
         statistics = renderer.render(settings, *film);
         image = film->resolve(samples);
         write_image(job.output, image, job.encoding);
     }
     const HostStep step("release");
+    encoder.reset();
     film.reset();
     image = {};
     return statistics;
