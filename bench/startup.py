@@ -14,7 +14,6 @@ from measure import BUILD, ROOT, SAHL, Run, machine_facts, spread, spread_text, 
 
 PROBE = BUILD / "bench" / "sahl_startup_probe.so"
 EMPTY = BUILD / "bench" / "sahl_empty"
-EMPTY_WITH_IMAGES = BUILD / "bench" / "sahl_empty_with_images"
 SCENE = ROOT / "scenes" / "whitted.json"
 CACHE_FILE = ".sahl-program"
 
@@ -30,7 +29,6 @@ PARTS = {
     "first_launch": "each kernel's first launch, until it starts: loading or compiling it",
     "render": "the other time until the image is there",
     "store": "storing the compiled kernels",
-    "oiio": "loading OpenImageIO's libraries",
     "encode": "image file",
     "exit": "freeing, ending",
 }
@@ -53,9 +51,6 @@ class Timeline:
                 self.kernels.append((rest[0], *map(int, rest[1:])))
             elif kind == "rename":
                 self.renames.append((int(rest[0]), rest[1]))
-
-    def to_main(self):
-        return self.main - self.start
 
     def first(self, name):
         """Start of the first call of that name."""
@@ -84,9 +79,8 @@ class Timeline:
             previous_end = ended
         return waited
 
-    def split(self, output, oiio_ns):
-        """Milliseconds of each of PARTS, and of the way to the first pixel. `oiio_ns`: what loading its libraries takes,
-        which comes between the image and its file."""
+    def split(self, output):
+        """Milliseconds of each of PARTS, and of the way to the first pixel."""
         written = max(time for time, path in self.renames if path == str(output))
         queue = self.last_end("clCreateCommandQueue", written)
         build_start, build_end = self.first("clBuildProgram"), self.last_end("clBuildProgram", written)
@@ -103,7 +97,6 @@ class Timeline:
             "upload": launch,
             "render": image,
             "store": self.stored(image, written),
-            "oiio": self.stored(image, written) + oiio_ns,
             "encode": written,
             "exit": self.end,
         }
@@ -124,7 +117,8 @@ class Bench:
     def __init__(self, folder, scene):
         self.folder = pathlib.Path(folder)
         self.output = self.folder / "image.png"
-        self.command = [SAHL, "render", scene, "--size", "64x64", "-o", self.output, "-q"]
+        self.command = [SAHL, "render", scene, "--size", "64x64", "-q", "-o", self.output]
+        self.exr_command = [*self.command[:-1], self.folder / "image.exr"]
         self.colds = 0
         self.times = {}
 
@@ -146,32 +140,29 @@ class Bench:
         return Timeline(run, log)
 
 
-def split_of_fastest(bench, timelines, oiio_ns):
+def split_of_fastest(bench, timelines):
     """Of one process, so that parts add up, the one that other work disturbed least. And the spread of the time to the
     first pixel over all of them."""
     fastest = min(timelines, key=lambda timeline: timeline.end - timeline.start)
-    first_pixels = [timeline.split(bench.output, oiio_ns)[1] for timeline in timelines]
-    return fastest.split(bench.output, oiio_ns)[0], spread(first_pixels)
+    first_pixels = [timeline.split(bench.output)[1] for timeline in timelines]
+    return fastest.split(bench.output)[0], spread(first_pixels)
 
 
 def measure(bench, repetitions, cold_repetitions):
     Run(bench.command, bench.warm_cache())
-    warm, cold, empty, empty_with_images = [], [], [], []
+    warm, cold = [], []
     for repetition in range(repetitions):
         bench.timed("warm", bench.command, bench.warm_cache())
         warm.append(bench.watched(bench.command, bench.warm_cache()))
         bench.timed("help", [SAHL, "--help"])
         bench.timed("empty", [EMPTY])
-        bench.timed("empty_with_images", [EMPTY_WITH_IMAGES])
-        empty.append(bench.watched([EMPTY]).to_main())
-        empty_with_images.append(bench.watched([EMPTY_WITH_IMAGES]).to_main())
+        bench.timed("warm_exr", bench.exr_command, bench.warm_cache())
         if repetition < cold_repetitions:
             bench.timed("cold", bench.command, bench.cold_cache())
             cold.append(bench.watched(bench.command, bench.cold_cache()))
     times = {name: spread(values) for name, values in bench.times.items()}
-    oiio_ns = min(empty_with_images) - min(empty)
-    split, first_pixel = split_of_fastest(bench, warm, oiio_ns)
-    cold_split, cold_first_pixel = split_of_fastest(bench, cold, oiio_ns)
+    split, first_pixel = split_of_fastest(bench, warm)
+    cold_split, cold_first_pixel = split_of_fastest(bench, cold)
     return {
         "warm_ms": times["warm"]["median"],
         "cold_ms": times["cold"]["median"],
@@ -188,9 +179,9 @@ def print_report(report):
     machine = report["machine"]
     print(f"{machine['processor']}, {machine['cores']} cores, load {machine['load_average']:.1f}; medians in ms"
           " (least to most)\n")
-    for name, text in (("warm", "64x64 image, warm"), ("cold", "64x64 image, cold"), ("help", "sahl --help"),
-                       ("empty", "an empty program with the same libraries"),
-                       ("empty_with_images", "the same with OpenImageIO")):
+    for name, text in (("warm", "64x64 image, warm"), ("cold", "64x64 image, cold"),
+                       ("warm_exr", "the same as EXR, by OpenImageIO, warm"), ("help", "sahl --help"),
+                       ("empty", "an empty program with the same libraries")):
         times = report["times_ms"]
         print(f"  {text:42}{spread_text(times[name]):>24}   processor {times[name + '_processor']['median']:.0f}")
     for name in ("warm", "cold"):

@@ -203,7 +203,8 @@ private:
             const Checkpoints checkpoints = checkpoints_of(order, task, settings, film);
             auto said = Clock::now();
             const auto say_progress = [&](std::uint64_t done, std::uint64_t total) {
-                load_encoders();  // now, as loading keeps PoCL from loading kernels
+                // Now, as loading keeps PoCL from loading kernels.
+                for (const BatchOutput& output : task.outputs) load_encoder(output.path);
                 if (Clock::now() - said < between_messages) return;
                 said = Clock::now();
                 socket_.send({{"progress", task.job}, {"done", done}, {"total", total}});
@@ -223,7 +224,8 @@ private:
             task.image = film.resolve(settings.spp);
         }
         add_metadata(job, result, task);
-        wait_for_encoders();  // this image shall not fail for what the next one does
+        // This image shall not fail for what the next one does.
+        for (const BatchOutput& output : task.outputs) wait_for_encoder(output.path);
         const GenerationCounts rays = total_rays(result.statistics);
         const nlohmann::json message{{"rendered", task.job},
                                      {"seconds", result.statistics.seconds},

@@ -104,7 +104,8 @@ Rendered render_image(Renderer& renderer, Device& device, const RenderSettings& 
             settings, film,
             [&](std::uint64_t done, std::uint64_t all) {
                 defer_interruption();  // there is an image to save
-                load_encoders();       // now, as loading keeps PoCL from loading kernels
+                // Now, as loading keeps PoCL from loading kernels.
+                for (const Output& output : outputs) load_encoder(output.path);
                 const std::uint64_t pixels = done / static_cast<std::uint64_t>(samples);
                 if (early) early->set_finished(finished_rows(pixels, result.size.width, result.size.height));
                 progress.update(done, all);

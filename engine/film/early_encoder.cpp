@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <stop_token>
 #include <thread>
@@ -29,8 +28,8 @@ struct EarlyEncoder::Impl {
         : film(the_film),
           samples(samples_a_pixel),
           path(file),
-          layout{film.width(), film.height(), encoding_of(file, output), {}, output.metadata},
-          exposure(output.exposure) {}
+          layout{film.width(), film.height(), encoding_of(file, output), {}, {}},
+          encoder(file, layout, output.exposure) {}
 
     /// The rows that are finished, once those that are not encoded yet are worth a band.
     int wait_for_rows(const std::stop_token& stop) {
@@ -49,12 +48,10 @@ struct EarlyEncoder::Impl {
             const int end = std::min(wait_for_rows(stop), begin + band_rows);
             if (stop.stop_requested()) return;
             const std::uint64_t start = monotonic_ns();
-            // Not before rows are finished: loading the codecs would keep PoCL from loading kernels.
-            if (!encoder) encoder.emplace(path, layout, exposure);
             colors.resize(row * static_cast<std::size_t>(end - begin));
             resolve(film.sums().subspan(row * static_cast<std::size_t>(begin), colors.size()), samples,
                     colors);
-            encoder->add(colors, {});
+            encoder.add(colors, {});
             encoded_rows = end;
             const std::lock_guard lock(mutex);
             hidden_ns += std::min(monotonic_ns(), wait_ns) - std::min(start, wait_ns);
@@ -90,7 +87,7 @@ struct EarlyEncoder::Impl {
         thread.join();
         if (failure) std::rethrow_exception(failure);
         encode_rows({});
-        std::vector<unsigned char> file = encoder->finish(metadata);
+        std::vector<unsigned char> file = encoder.finish(metadata);
         add_hidden_step("encode", hidden_ns);
         return file;
     }
@@ -99,9 +96,8 @@ struct EarlyEncoder::Impl {
     int samples;
     std::filesystem::path path;
     FileLayout layout;
-    float exposure;
-    std::optional<ImageEncoder> encoder{};  ///< the thread's, until it ends
-    int encoded_rows = 0;                   ///< the thread's, too
+    ImageEncoder encoder;  ///< the thread's, until it ends
+    int encoded_rows = 0;  ///< the thread's, too
 
     std::mutex mutex{};
     std::condition_variable_any changed{};
@@ -113,7 +109,7 @@ struct EarlyEncoder::Impl {
     std::jthread thread{};
 };
 
-bool can_encode_early(const std::filesystem::path& path) { return takes_metadata_last(format_of(path)); }
+bool can_encode_early(const std::filesystem::path& path) { return is_png(format_of(path)); }
 
 EarlyEncoder::EarlyEncoder(const Film& film, int samples, const std::filesystem::path& path,
                            const OutputSettings& settings)

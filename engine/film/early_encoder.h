@@ -13,7 +13,7 @@
 
 namespace sahl {
 
-/// Whether files of this format can be: PNG, whose metadata may come last. Throws as check_output_format.
+/// Whether files of this format can be: PNG, whose metadata come last. Throws as check_output_format.
 bool can_encode_early(const std::filesystem::path& path);
 
 /// Encodes, in a thread of its own, what is finished of a film. Where it ends without write(), nothing is

@@ -1,54 +1,16 @@
 // The codecs of the image formats, in a library of their own: they are OpenImageIO's, which comes with 260
 // other libraries, a fifth of a second's work for the dynamic linker. So they are loaded when they are
-// needed.
+// needed: to read images, and to write all but PNG.
 #pragma once
 
-#include <algorithm>
 #include <memory>
-#include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
-#include "engine/film/image_format.h"
+#include "engine/film/file_encoder.h"
 
 namespace sahl {
-
-/// Channels of a file that an AOV takes.
-constexpr std::size_t channels_of(Aov aov) {
-    return std::max<std::size_t>(aov_name(aov).components.size(), 1);
-}
-
-using Metadata = std::vector<std::pair<std::string, std::string>>;
-
-/// Whether the metadata of a file in this format can be changed once its pixels are encoded: PNG consists of
-/// chunks that do not know where they are.
-inline bool takes_metadata_last(const Format& format) { return std::string_view(format.name) == "png"; }
-
-/// What a file is going to hold.
-struct FileLayout {
-    int width = 0;
-    int height = 0;
-    Encoding encoding{};
-    std::vector<Aov> aovs{};  ///< in channels beside R, G and B
-    Metadata metadata{};
-};
-
-/// An image file on its way into memory.
-class FileEncoder {
-public:
-    virtual ~FileEncoder() = default;
-    /// Rows [y, y_end), where those before were the last that came. `colors`: three values a pixel, from row
-    /// y on, of the layout's pixel type if that is an integer, else floats. `aovs`: of the layout, whole
-    /// images. False: see error().
-    virtual bool write(int y, int y_end, const void* colors, std::span<const AovImage> aovs) = 0;
-    /// After the last row. `metadata`: what the file is to have instead of the layout's, where the format
-    /// can. False: see error().
-    virtual bool finish(const Metadata& metadata) = 0;
-    virtual std::string error() const = 0;
-};
 
 /// What a file claims to hold.
 struct StoredImage {

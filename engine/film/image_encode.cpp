@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/film/image_codecs.h"
+#include "engine/film/png_encoder.h"
 
 namespace sahl {
 namespace {
@@ -109,7 +111,9 @@ struct ImageEncoder::Impl {
         file.reserve(most_file_bytes(pixel_bytes(file_layout.encoding, file_layout.aovs) * width *
                                      static_cast<std::uint64_t>(file_layout.height)));
         std::string cause;
-        encoder = image_codecs(ExitCode::output).encode(file_layout, file, cause);
+        encoder = is_png(*file_layout.encoding.format)
+                      ? encode_png(file_layout, file, cause)
+                      : image_codecs(ExitCode::output).encode(file_layout, file, cause);
         if (!encoder) fail(cause);
     }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/film/image_codecs.h"
+#include "engine/film/file_encoder.h"
 
 namespace sahl {
 

@@ -28,6 +28,8 @@ struct Format {
 
 const std::array<Format, 5>& image_formats();
 
+inline bool is_png(const Format& format) { return std::string_view(format.name) == "png"; }
+
 /// By the extension, of any case; a special file without one is a PNG. Throws Error(usage) for others.
 const Format& format_of(const std::filesystem::path& path);
 

@@ -24,12 +24,16 @@ void check_output(const fs::path& path, const OutputSettings& settings) {
     check_output_file(path);
 }
 
-void load_encoders() {
-    static const std::shared_future<void> loading = std::async(std::launch::async, wait_for_encoders);
+void load_encoder(const fs::path& path) {
+    if (is_png(format_of(path))) return;
+    static const std::shared_future<void> loading =
+        std::async(std::launch::async, [] { image_codecs(ExitCode::output); });
     if (loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready) loading.get();
 }
 
-void wait_for_encoders() { image_codecs(ExitCode::output); }
+void wait_for_encoder(const fs::path& path) {
+    if (!is_png(format_of(path))) image_codecs(ExitCode::output);
+}
 
 std::uint64_t encoder_bytes(const fs::path& path, const OutputSettings& settings, int width, int height,
                             std::span<const Aov> aovs) {

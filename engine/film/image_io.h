@@ -1,5 +1,5 @@
-// Image files through OpenImageIO: what each format can hold, writing and reading. OpenImageIO itself is in a
-// library that is loaded when it is first needed.
+// Image files: what each format can hold, writing and reading. PNG is written by libpng, all else is done by
+// OpenImageIO, in a library that is loaded when it is first needed.
 #pragma once
 
 #include <cstdint>
@@ -59,13 +59,14 @@ void check_output(const std::filesystem::path& path, const OutputSettings& setti
 /// The same but for whether anything can be written there.
 void check_output_format(const std::filesystem::path& path, const OutputSettings& settings);
 
-/// Loads what encodes images, a fifth of a second's work, in a thread of its own from the first call on. To
-/// be called again and again while an image is rendered: throws Error(output) once it is known that it cannot
-/// be loaded.
-void load_encoders();
+/// Loads what encodes an image to `path`: nothing for PNG, for other formats OpenImageIO, a fifth of a
+/// second's work, in a thread of its own from the first call on. To be called again and again while the image
+/// is rendered: throws Error(output) once it is known that it cannot be loaded. Throws as
+/// check_output_format for the extension.
+void load_encoder(const std::filesystem::path& path);
 
-/// Returns when it is loaded: beside work that takes all memory it could not be. Throws as load_encoders.
-void wait_for_encoders();
+/// Returns when it is loaded: beside work that takes all memory it could not be. Throws as load_encoder.
+void wait_for_encoder(const std::filesystem::path& path);
 
 /// What write_image takes of memory beside the image and the AOVs, at most: the file and bands of rows
 /// on their way into it. Throws as check_output does for what the format cannot hold.
@@ -81,7 +82,7 @@ std::vector<unsigned char> encode_image(const std::filesystem::path& path, const
 /// NaN is stored as 0; values beyond what half or float hold as the largest finite value.
 /// `aovs` (of the image's size, EXR only) are stored beside R, G and B in channels of their own, see
 /// aov_names: as they are, Z and N as float, albedo in the pixel type, ids as unsigned integers.
-/// Throws as check_output and load_encoders, Error(output) for what fails in encoding or writing.
+/// Throws as check_output and load_encoder, Error(output) for what fails in encoding or writing.
 void write_image(const std::filesystem::path& path, const Image& image, const OutputSettings& settings,
                  std::span<const AovImage> aovs = {});
 

@@ -39,16 +39,19 @@ private:
     TemporaryFolder folder_;
 };
 
-TEST_CASE("image codecs: only what reads or writes images loads OpenImageIO", "[cli]") {
+TEST_CASE("image codecs: only what reads images, or writes others than PNG, loads OpenImageIO", "[cli]") {
     const TemporaryFolder folder;
     const std::string scene = scene_file("cli_mirrors.nff");
-    for (const std::vector<std::string>& arguments :
-         {std::vector<std::string>{"--help"}, {"info", scene}, {"devices"}, {"render", scene, "--dry-run"}}) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                      {"info", scene},
+                                                      {"devices"},
+                                                      {"render", scene, "--dry-run"},
+                                                      {"render", scene, "--depth", "0", "-o", "a.png"}}) {
         INFO(arguments.front());
         CHECK_FALSE(contains(libraries_of(folder.path(), arguments), "OpenImageIO"));
     }
     const std::string rendering =
-        libraries_of(folder.path(), {"render", scene, "--depth", "0", "-o", "a.png"});
+        libraries_of(folder.path(), {"render", scene, "--depth", "0", "-o", "a.png", "-o", "a.exr"});
     CHECK(contains(rendering, "libOpenImageIO.so"));
     // After the kernels: loading it keeps PoCL from loading them.
     CHECK(rendering.find("libOpenImageIO.so") > rendering.find("generate.so"));
@@ -58,14 +61,14 @@ TEST_CASE("image codecs: only what reads or writes images loads OpenImageIO", "[
 TEST_CASE("image codecs: a render without them ends soon, with a message and nothing written", "[cli]") {
     const LoneProgram sahl;
     const std::vector<std::string> endless{
-        "render", scene_file("cli_mirrors.nff"), "--size", "4096x4096", "--spp", "16384", "-o", "a.png",
+        "render", scene_file("cli_mirrors.nff"), "--size", "4096x4096", "--spp", "16384", "-o", "a.exr",
         "-q"};
     const ProcessResult missing = sahl.run(endless);
     INFO(missing.err);
     CHECK(missing.status == 6);
     CHECK(contains(missing.err, "libsahl_image_codecs.so: cannot open shared object file"));
     CHECK(contains(missing.err, "install Sahl again"));
-    CHECK_FALSE(fs::exists(sahl.folder() / "a.png"));
+    CHECK_FALSE(fs::exists(sahl.folder() / "a.exr"));
 
     write_file(sahl.folder() / "bin/libsahl_image_codecs.so", "no library");
     const ProcessResult broken = sahl.run(endless);
@@ -84,7 +87,7 @@ TEST_CASE("image codecs: without them compare says so, and what has no images go
     CHECK(contains(compared.err, "images can be neither read nor written"));
     CHECK(sahl.run({"info", scene}).status == 0);
 
-    const ProcessResult batch = sahl.run({"batch", scene, "-o", "{scene}.png", "-q"});
+    const ProcessResult batch = sahl.run({"batch", scene, "-o", "{scene}.exr", "-q"});
     INFO(batch.err);
     CHECK(batch.status == 8);
     CHECK(contains(batch.err, "libsahl_image_codecs.so: cannot open shared object file"));

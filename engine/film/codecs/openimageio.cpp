@@ -13,8 +13,6 @@
 namespace sahl {
 namespace {
 
-constexpr int png_filter_up = 0x20;  ///< libpng's PNG_FILTER_UP: each row less the one above it
-
 constexpr std::array pixel_types{OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16, OIIO::TypeDesc::HALF,
                                  OIIO::TypeDesc::FLOAT};
 
@@ -45,16 +43,11 @@ OIIO::ImageSpec spec_of(const FileLayout& layout) {
     OIIO::ImageSpec spec(layout.width, layout.height, 3, type_of(encoding.pixel_type));
     add_channels(spec, layout);
     const std::string_view format = encoding.format->name;
-    // This names the colour space in the file (PNG: sRGB or gAMA chunk) and converts nothing. TIFF
-    // would get an EXIF directory, which OpenImageIO 2.4 writes damaged into memory.
+    // This names the colour space in the file and converts nothing. TIFF would get an EXIF directory, which
+    // OpenImageIO 2.4 writes damaged into memory.
     if (format != "tiff")
         spec.attribute("oiio:ColorSpace", encoding.transfer == Transfer::srgb ? "sRGB" : "Linear");
-    if (format == "png") {
-        const int level = encoding.level.value_or(1);
-        spec.attribute("png:compressionLevel", level);
-        // libpng would try five filters on each row, which takes longer than the fastest compression does.
-        if (level <= 1) spec.attribute("png:filter", png_filter_up);
-    } else if (format == "jpeg") {
+    if (format == "jpeg") {
         spec.attribute("Compression", "jpeg:" + std::to_string(encoding.level.value_or(95)));
         spec.attribute("jpeg:subsampling", "4:4:4");
     } else if (!encoding.compression.empty()) {
@@ -70,7 +63,6 @@ class Encoder final : public FileEncoder {
 public:
     Encoder(const FileLayout& layout, std::vector<unsigned char>& file)
         : layout_(layout),
-          file_(file),
           memory_(file),
           output_(OIIO::ImageOutput::create(layout.encoding.format->name)),
           color_(type_of(layout.encoding.pixel_type)),
@@ -79,50 +71,21 @@ public:
     bool open() {
         if (!output_ || !output_->set_ioproxy(&memory_)) return false;
         const std::string extension(layout_.encoding.format->extensions.front());
-        if (!output_->open("memory" + extension, spec_of(layout_))) return false;
-        head_size_ = static_cast<std::ptrdiff_t>(file_.size());
-        return true;
-    }
-
-    ~Encoder() override {
-        if (head_size_ == 0 || finished_ || !takes_metadata_last(*layout_.encoding.format)) return;
-        // libpng complains, on standard error, of an image that ends without any pixels: it gets some.
-        const std::vector<std::uint16_t> black(3 * static_cast<std::size_t>(layout_.width));
-        while (std::ssize(file_) == head_size_ && next_row_ < layout_.height) {
-            if (!write(next_row_, next_row_ + 1, black.data(), {})) return;
-        }
+        return output_->open("memory" + extension, spec_of(layout_));
     }
 
     bool write(int y, int y_end, const void* colors, std::span<const AovImage> aovs) override {
-        next_row_ = y_end;
         if (aovs.empty()) return output_->write_scanlines(y, y_end, 0, given_color_, colors);
         // Each channel has a type of its own.
         return output_->write_scanlines(y, y_end, 0, OIIO::TypeDesc::UNKNOWN,
                                         interleave(y, y_end, colors, aovs));
     }
 
-    bool finish(const Metadata& metadata) override {
-        finished_ = true;
-        if (!output_->close()) return false;
-        return metadata == layout_.metadata || replace_head(metadata);
-    }
+    bool finish(const Metadata& /*metadata*/) override { return output_->close(); }
 
     std::string error() const override { return output_ ? output_->geterror() : OIIO::geterror(); }
 
 private:
-    /// What comes before the pixels, with `metadata`.
-    bool replace_head(const Metadata& metadata) {
-        std::vector<unsigned char> head;
-        FileLayout layout = layout_;
-        layout.metadata = metadata;
-        layout.encoding.level = 0;
-        Encoder encoder(layout, head);
-        if (!encoder.open()) return false;
-        file_.erase(file_.begin(), file_.begin() + head_size_);
-        file_.insert(file_.begin(), head.begin(), head.begin() + encoder.head_size_);
-        return true;
-    }
-
     /// All channels of a pixel beside each other, each in its type.
     const void* interleave(int y, int y_end, const void* colors, std::span<const AovImage> aovs) {
         std::size_t pixel_size = 3 * color_.size();
@@ -155,10 +118,6 @@ private:
     }
 
     FileLayout layout_;
-    std::vector<unsigned char>& file_;
-    std::ptrdiff_t head_size_ = 0;  ///< of what comes before the pixels; 0: it is not open
-    int next_row_ = 0;
-    bool finished_ = false;
     OIIO::Filesystem::IOVecOutput memory_;
     std::unique_ptr<OIIO::ImageOutput> output_;
     OIIO::TypeDesc color_;        ///< in the file
