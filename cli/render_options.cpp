@@ -120,7 +120,8 @@ void add_traversal_option(CLI::App& command, std::optional<Traversal>& traversal
         command, "--traversal", "WAY", traversal,
         {{"packet", Traversal::packet}, {"stream", Traversal::stream}, {"scalar", Traversal::scalar}},
         "of rays through the tree, which changes no image: neighbours together, single rays "
-        "in turn, or ray by ray (default: packet on CPUs, scalar elsewhere)");
+        "in turn, or ray by ray (default: on CPUs packet for batches of rays that keep together and stream "
+        "for others, elsewhere scalar)");
 }
 
 void add_tree_options(CLI::App& command, BuildQuality& quality, std::optional<Traversal>& traversal) {

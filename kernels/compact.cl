@@ -3,7 +3,9 @@
 // which waits its turn.
 //
 // Three steps over blocks of SAHL_COMPACT_BLOCK parents: count the children of each block, sum the
-// counts (one work-item: there are few blocks), move the rays.
+// counts (one work-item: there are few blocks), move the rays. While these are at hand it is found out
+// how far neighbours keep together: by how many ways a block's children go, which decides how the next
+// generation is traced.
 
 #include "kernels/ray_batch.h"
 
@@ -26,7 +28,7 @@ kernel void count_children(const global uint* outcomes, global uint* block_count
     block_shadow_rays[block] = shadow_rays;
 }
 
-/// Turns the counts into positions. totals: children, shadow rays (low and high word).
+/// Turns the counts into positions, and sets all totals (SAHL_TOTAL_*).
 kernel void sum_children(global uint* block_counts, const global uint* block_shadow_rays, global uint* totals,
                          const uint block_count) {
     if (get_global_id(0) != 0u) {
@@ -42,9 +44,11 @@ kernel void sum_children(global uint* block_counts, const global uint* block_sha
     for (uint k = 0; k < block_count; ++k) {
         shadow_rays += block_shadow_rays[k];
     }
-    totals[0] = children;
-    totals[1] = (uint)shadow_rays;
-    totals[2] = (uint)(shadow_rays >> 32);
+    totals[SAHL_TOTAL_CHILDREN] = children;
+    totals[SAHL_TOTAL_SHADOW_RAYS] = (uint)shadow_rays;
+    totals[SAHL_TOTAL_SHADOW_RAYS + 1u] = (uint)(shadow_rays >> 32);
+    totals[SAHL_TOTAL_WAYS] = 0;
+    totals[SAHL_TOTAL_FAMILIES] = 0;
 }
 
 /// Copies `count` numbers of `from`, the places of which are given, to positions `to` and on of two arrays
@@ -83,10 +87,27 @@ static inline void move_rays(const Moved* moved, global uint* next, global uint*
     }
 }
 
+/// One bit for each way of the children: its octant and the axis that it goes along most, as packets have
+/// them in passes (packet.h).
+static inline uint ways_of(const Moved* moved, uint capacity) {
+    const global uint* directions = moved->rays + (size_t)SAHL_RAY_DIRECTION * capacity;
+    uint ways = 0;
+    for (uint k = 0; k < moved->count; ++k) {
+        const global uint* direction = directions + moved->place[k];
+        const uint x = direction[0], y = direction[capacity], z = direction[2u * (size_t)capacity];
+        // Of floats without their sign, larger ones are larger words.
+        const uint length_x = x & 0x7fffffffu, length_y = y & 0x7fffffffu, length_z = z & 0x7fffffffu;
+        const uint axis =
+            length_x >= length_y && length_x >= length_z ? 0u : (length_y >= length_z ? 8u : 16u);
+        ways |= 1u << (axis + (x >> 31) + 2u * (y >> 31) + 4u * (z >> 31));
+    }
+    return ways;
+}
+
 kernel void compact(const global uint* children, const global uint* child_ids, const global uint* outcomes,
                     const global uint* block_counts, global uint* next, global uint* next_ids,
-                    global uint* waiting, global uint* waiting_ids, const uint capacity, const uint count,
-                    const uint block_count) {
+                    global uint* waiting, global uint* waiting_ids, global uint* totals, const uint capacity,
+                    const uint count, const uint block_count) {
     const uint block = (uint)get_global_id(0);
     if (block >= block_count) {
         return;
@@ -106,4 +127,10 @@ kernel void compact(const global uint* children, const global uint* child_ids, c
     }
     move_rays(&reflected, next, next_ids, waiting, waiting_ids, capacity);
     move_rays(&transmitted, next, next_ids, waiting, waiting_ids, capacity);
+    const uint families = (reflected.count > 0u) + (transmitted.count > 0u);
+    if (families > 0u) {
+        const uint ways = popcount(ways_of(&reflected, capacity)) + popcount(ways_of(&transmitted, capacity));
+        atomic_add(totals + SAHL_TOTAL_WAYS, ways);
+        atomic_add(totals + SAHL_TOTAL_FAMILIES, families);
+    }
 }

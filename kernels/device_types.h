@@ -310,6 +310,13 @@ SAHL_STATIC_ASSERT(sizeof(WaveConstants) == 48, "WaveConstants is 48 bytes");
 // Parents that one work-item compacts.
 #define SAHL_COMPACT_BLOCK 256u
 
+// What a batch leaves to be known of it, in words.
+#define SAHL_TOTAL_CHILDREN 0u
+#define SAHL_TOTAL_SHADOW_RAYS 1u  // low and high word
+#define SAHL_TOTAL_FAMILIES 3u  // reflected or transmitted children of a block of parents, where it has any
+#define SAHL_TOTAL_WAYS 4u      // octants and axes that each family's rays go along, summed over all
+#define SAHL_TOTALS 5u
+
 #ifdef __cplusplus
 }  // namespace sahl::device
 #endif

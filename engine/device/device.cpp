@@ -143,7 +143,9 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
     const std::size_t best_group = chosen.info.is_cpu ? cpu_local_size : gpu_local_size;
     impl_->local_size =
         std::min(options.work_group_size > 0 ? options.work_group_size : best_group, largest_group);
-    impl_->traversal = options.traversal.value_or(chosen.info.is_cpu ? Traversal::packet : Traversal::scalar);
+    const bool is_cpu = chosen.info.is_cpu;
+    impl_->traversal = options.traversal.value_or(is_cpu ? Traversal::packet : Traversal::scalar);
+    impl_->incoherent_traversal = options.traversal.value_or(is_cpu ? Traversal::stream : Traversal::scalar);
     impl_->build_options = options.build_options;
     impl_->rays_per_item = chosen.info.is_cpu ? cpu_rays_per_item : gpu_rays_per_item;
     cl_int status = CL_SUCCESS;
@@ -164,6 +166,8 @@ std::size_t Device::local_size() const { return impl_->local_size; }
 std::uint32_t Device::rays_per_item() const { return impl_->rays_per_item; }
 
 Traversal Device::traversal() const { return impl_->traversal; }
+
+Traversal Device::incoherent_traversal() const { return impl_->incoherent_traversal; }
 
 const std::string& Device::build_options() const { return impl_->build_options; }
 

@@ -42,8 +42,8 @@ struct DeviceOptions {
     std::string selector;  ///< empty: PoCL's CPU; digits: an index; else part of a name
     int threads = 0;  ///< CPU threads of PoCL; 0: all. Counts before the process's first OpenCL call only
     std::size_t work_group_size = 0;  ///< work-items; 0: the device's best. No image depends on it
-    /// Nothing: packets on CPUs, for reflected and refracted rays keep together, ray by ray elsewhere. No
-    /// image depends on it.
+    /// Nothing: on CPUs by batch, packets for rays that keep together and streams for others; ray by ray
+    /// elsewhere. No image depends on it.
     std::optional<Traversal> traversal{};
     /// More options for the OpenCL compiler: -DSAHL_PLAIN_OPENCL for kernels without the host's SIMD
     /// builtins, -DSAHL_NO_AVX512 for those of AVX2 at most. No image depends on them.
@@ -75,6 +75,8 @@ public:
 
     /// The way that rays take through the tree.
     Traversal traversal() const;
+    /// That of batches whose neighbours do not keep together.
+    Traversal incoherent_traversal() const;
 
     /// DeviceOptions::build_options.
     const std::string& build_options() const;

@@ -31,6 +31,7 @@ struct Device::Impl {
     std::size_t local_size = 1;
     std::uint32_t rays_per_item = 1;
     Traversal traversal = Traversal::scalar;
+    Traversal incoherent_traversal = Traversal::scalar;
     std::string build_options;
     cl::Device device;
     cl::Context context;

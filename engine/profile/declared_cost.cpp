@@ -43,7 +43,8 @@ std::uint64_t shade_bytes(const GenerationWork& work) {
     const std::uint64_t of_hit = exact_ray_bytes + sizeof(device::DevicePrimitive) + triangle_bytes +
                                  surface_bytes + work.lights * vector_bytes;
     const std::uint64_t of_group = sizeof(device::DeviceMaterial) + work.lights * sizeof(device::DeviceLight);
-    return work.rays * (loaded + stored) + work.visits.hits * of_hit + groups(work.visits.hits) * of_group +
+    const std::uint64_t hits = work.visits.hits();
+    return work.rays * (loaded + stored) + hits * of_hit + groups(hits) * of_group +
            work.children * ray_bytes;
 }
 
@@ -57,19 +58,22 @@ std::uint64_t shadow_bytes(const GenerationWork& work) {
 
 }  // namespace
 
-DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work) {
+DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work,
+                           const IntersectVisits& intersect) {
     const std::uint64_t blocks = (work.rays + SAHL_COMPACT_BLOCK - 1) / SAHL_COMPACT_BLOCK;
     if (kernel == "generate") return {work.rays * ray_bytes, generate_flop(work)};
     if (kernel == "intersect") {
-        return {work.rays * (traced_bytes + hit_bytes) + visited_bytes(work.visits.intersect),
-                work.rays * ray_flop + work.visits.intersect.flop};
+        return {intersect.rays * (traced_bytes + hit_bytes) + visited_bytes(intersect.visits),
+                intersect.rays * ray_flop + intersect.visits.flop};
     }
     if (kernel == "shade") return {shade_bytes(work), work.visits.shade.flop};
     if (kernel == "shadow")
         return {shadow_bytes(work), work.shadow_rays * ray_flop + work.visits.shadow.flop};
     if (kernel == "count_children") return {work.rays * word + blocks * 3 * word, 0};
     if (kernel == "sum_children") return {blocks * 5 * word + 3 * word, 0};
-    if (kernel == "compact") return {work.rays * word + blocks * 2 * word + work.children * 2 * ray_bytes, 0};
+    if (kernel == "compact") {
+        return {work.rays * word + blocks * 2 * word + work.children * (2 * ray_bytes + vector_bytes), 0};
+    }
     return {};
 }
 

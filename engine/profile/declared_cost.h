@@ -23,7 +23,8 @@ struct DeclaredCost {
     std::uint64_t flop = 0;   ///< floating-point operations, see kernels/count_visits.h
 };
 
-/// Of `kernel` ("intersect", without the way of traversal) over the rays of one generation.
-DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work);
+/// Of `kernel` over the rays of one generation; of "intersect" over those that `intersect` counts.
+DeclaredCost declared_cost(std::string_view kernel, const GenerationWork& work,
+                           const IntersectVisits& intersect);
 
 }  // namespace sahl

@@ -32,7 +32,8 @@ void describe_device(const Device& device, ProfileEnvironment& environment) {
     environment.driver = info.driver;
     environment.threads = info.compute_units;
     environment.cpu = processor_name();
-    const std::string kernels = expand_files(wavefront_sources(device.traversal())).text;
+    const std::string kernels = expand_files(wavefront_sources(device.traversal())).text +
+                                expand_files(incoherent_sources(device.incoherent_traversal())).text;
     environment.kernel_hash = fmt::format("{:016x}", fnv1a(device.build_options(), fnv1a(kernels)));
 }
 

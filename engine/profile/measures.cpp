@@ -113,18 +113,22 @@ GenerationWork work_of(const Measurement& measurement, std::uint32_t generation)
     return work;
 }
 
-/// The rays of a kernel in a generation, all of whose launches are in `sums`.
-void add_work(Sums& sums, std::string_view kernel, const GenerationWork& work) {
-    const DeclaredCost cost = declared_cost(kernel, work);
+/// The rays of a kernel in a generation, all of whose launches are in `sums`; of intersect those that took
+/// the way `variant`.
+void add_work(Sums& sums, std::string_view kernel, const std::string& variant, const GenerationWork& work) {
+    const auto of_variant = work.visits.intersect.find(variant);
+    const IntersectVisits intersect =
+        of_variant != work.visits.intersect.end() ? of_variant->second : IntersectVisits{};
+    const DeclaredCost cost = declared_cost(kernel, work, intersect);
     sums.bytes.add(cost.bytes);
     sums.flop.add(cost.flop);
-    sums.rays_in = kernel == "shadow" ? work.shadow_rays : work.rays;
+    sums.rays_in = kernel == "shadow" ? work.shadow_rays : kernel == "intersect" ? intersect.rays : work.rays;
     sums.rays_out.add(kernel == "generate"    ? work.rays
-                      : kernel == "intersect" ? work.visits.hits
+                      : kernel == "intersect" ? intersect.hits
                       : kernel == "shadow"    ? work.visits.lit
                                               : work.children);
     if (kernel != "intersect" && kernel != "shadow") return;
-    const KernelVisits& visits = kernel == "intersect" ? work.visits.intersect : work.visits.shadow;
+    const KernelVisits& visits = kernel == "intersect" ? intersect.visits : work.visits.shadow;
     sums.nodes.add(visits.nodes);
     sums.leaves.add(visits.leaves);
 }
@@ -229,7 +233,7 @@ void add_rows(Profile& profile, const Measurement& measurement) {
     std::map<RowKey, Sums> rows = sum_launches(measurement);
     for (auto& [key, sums] : rows) {
         const auto& [generation, place, variant] = key;
-        add_work(sums, pipeline.at(place), work_of(measurement, generation));
+        add_work(sums, pipeline.at(place), variant, work_of(measurement, generation));
         profile.rows.push_back(
             {name_of(place), variant, generation, measures_of(sums, visits_nodes(pipeline[place]), profile)});
     }

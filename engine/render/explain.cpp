@@ -68,7 +68,7 @@ public:
         note_contributions(in_work, read_all<float>(out.light));
         launch_count_children(wavefront_, in_work.batch);
         launch_sum_children(wavefront_, in_work.batch, out);
-        if (spawn) launch_compact(wavefront_, in_work.batch, next, waiting);
+        if (spawn) launch_compact(wavefront_, in_work.batch, next, waiting, out);
     }
 
     /// The children of a batch in the order in which they are compacted: all reflected, then all transmitted.
@@ -191,7 +191,8 @@ Explanation explain_pixel(Wavefront& wavefront, const device::CameraConstants& c
         while (!stack.empty()) {
             const ExplainedBatch parents = std::move(stack.back());
             stack.pop_back();
-            const auto [slot, count, generation] = parents.batch;
+            const std::uint32_t slot = parents.batch.slot;
+            const std::uint32_t generation = parents.batch.generation;
             const bool spawn = generation < depth;
             explainer.trace(parents, spawn, queues.batches[slot],
                             queues.batches[spawn ? free_slots.back() : slot]);

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "engine/render/incoherent_intersect.h"
 #include "kernels/rays_per_item.h"
 
 namespace sahl {
 namespace {
+
+constexpr const char* counting_option = "-DSAHL_COUNT_VISITS";
 
 Launch per_ray(std::uint32_t rays_per_item, std::uint32_t generation, std::uint32_t count) {
     return {(count + rays_per_item - 1) / rays_per_item, generation, count, rays_per_item};
@@ -20,10 +24,10 @@ Launch per_block(const WaitingBatch& in_work) {
 }
 
 /// The launch of a kernel that traces rays so many to each work-item.
-Launch per_traced_ray(const Wavefront& wavefront, const WaitingBatch& in_work, std::uint32_t rays,
+Launch per_traced_ray(Traversal way, const WaitingBatch& in_work, std::uint32_t rays,
                       std::uint32_t rays_of_packets, std::uint32_t rays_of_streams) {
-    if (wavefront.kernels.traversal == Traversal::packet) rays = rays_of_packets;
-    if (wavefront.kernels.traversal == Traversal::stream) rays = rays_of_streams;
+    if (way == Traversal::packet) rays = rays_of_packets;
+    if (way == Traversal::stream) rays = rays_of_streams;
     return per_ray(rays, in_work.generation, in_work.count);
 }
 
@@ -33,19 +37,19 @@ std::string traversing(const char* kernel, Traversal traversal) {
 }
 
 /// Launches a kernel; counting ones add up what they do, by ray or by work-item.
-template <class... Arguments>
+/// `sums_of`: what they are added to, of a generation.
+template <class SumsOf, class... Arguments>
 void launch_counted(Wavefront& wavefront, Kernel& kernel, const Launch& launch, bool by_ray,
-                    KernelVisits GenerationVisits::*sums, const Arguments&... arguments) {
+                    const SumsOf& sums_of, const Arguments&... arguments) {
     if (wavefront.visits == nullptr) {
         kernel.launch(launch, arguments...);
         return;
     }
     kernel.launch(launch, arguments..., wavefront.visits->next());
     GenerationVisits& generation = wavefront.visits->generations[launch.generation];
-    wavefront.visits->add_to(generation.*sums, by_ray ? launch.items : launch.work_items, generation.lit);
+    KernelVisits& sums = sums_of(generation);
+    wavefront.visits->add_to(sums, by_ray ? launch.items : launch.work_items, generation.lit);
 }
-
-bool counts_by_ray(const Wavefront& wavefront) { return wavefront.kernels.traversal == Traversal::scalar; }
 
 /// Adds what the last launch counted to its rays' pixels. `rays`: that were traced for each of the batch.
 void add_to_pixels(Wavefront& wavefront, const WaitingBatch& in_work, std::span<const std::uint32_t> rays) {
@@ -81,15 +85,29 @@ std::vector<std::string> wavefront_sources(Traversal traversal) {
 Program build_wavefront_program(Device& device) { return {device, wavefront_sources(device.traversal())}; }
 
 Program build_counting_program(Device& device, Traversal traversal) {
-    return {device, wavefront_sources(traversal), "-DSAHL_COUNT_VISITS"};
+    return {device, wavefront_sources(traversal), counting_option};
 }
 
-WavefrontKernels::WavefrontKernels(Traversal way, Program& program)
-    : traversal(way),
-      generate(program.kernel("generate")),
-      intersect(program.kernel(traversing("intersect", way))),
+std::vector<std::string> incoherent_sources(Traversal traversal) {
+    return {traversing("intersect", traversal) + ".cl"};
+}
+
+Program build_incoherent_program(Device& device, bool counting) {
+    return {device, incoherent_sources(device.incoherent_traversal()), counting ? counting_option : ""};
+}
+
+TracingKernel tracing_kernel(const char* name, Traversal way, Program& program) {
+    return {way, program.kernel(traversing(name, way))};
+}
+
+WavefrontKernels::WavefrontKernels(Traversal traversal, Program& program)
+    : WavefrontKernels(traversal, program, tracing_kernel("intersect", traversal, program)) {}
+
+WavefrontKernels::WavefrontKernels(Traversal traversal, Program& program, TracingKernel intersecting)
+    : generate(program.kernel("generate")),
       shade(program.kernel("shade")),
-      shadow(program.kernel(traversing("shadow", way))),
+      intersect(std::move(intersecting)),
+      shadow(tracing_kernel("shadow", traversal, program)),
       count_children(program.kernel("count_children")),
       sum_children(program.kernel("sum_children")),
       compact(program.kernel("compact")) {}
@@ -104,14 +122,24 @@ void launch_intersect(Wavefront& wavefront, const WaitingBatch& in_work) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    launch_counted(wavefront, wavefront.kernels.intersect,
-                   per_traced_ray(wavefront, in_work, wavefront.device.rays_per_item(), SAHL_PACKET_RAYS,
-                                  SAHL_STREAM_RAYS),
-                   counts_by_ray(wavefront), &GenerationVisits::intersect, scene.nodes, scene.leaves,
-                   scene.outlines, scene.instances, scene.constants, batch.rays, batch.ids, q.hits, q.hit_ids,
-                   q.capacity, in_work.count);
+    TracingKernel& intersect = in_work.coherent || wavefront.incoherent == nullptr
+                                   ? wavefront.kernels.intersect
+                                   : wavefront.incoherent->kernel_for(in_work.count);
+    const auto sums_of = [&](GenerationVisits& generation) -> IntersectVisits& {
+        return generation.intersect[name_of(intersect.way)];
+    };
+    launch_counted(
+        wavefront, intersect.kernel,
+        per_traced_ray(intersect.way, in_work, wavefront.device.rays_per_item(), SAHL_PACKET_RAYS,
+                       SAHL_STREAM_RAYS),
+        intersect.way == Traversal::scalar,
+        [&](GenerationVisits& generation) -> KernelVisits& { return sums_of(generation).visits; },
+        scene.nodes, scene.leaves, scene.outlines, scene.instances, scene.constants, batch.rays, batch.ids,
+        q.hits, q.hit_ids, q.capacity, in_work.count);
     if (wavefront.visits != nullptr) {
-        wavefront.visits->generations[in_work.generation].hits += count_hits(q, in_work.count);
+        IntersectVisits& sums = sums_of(wavefront.visits->generations[in_work.generation]);
+        sums.rays += in_work.count;
+        sums.hits += count_hits(q, in_work.count);
         add_to_pixels(wavefront, in_work, std::vector<std::uint32_t>(in_work.count, 1));
     }
 }
@@ -120,24 +148,28 @@ void launch_shade(Wavefront& wavefront, const WaitingBatch& in_work, bool spawn,
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
     const RayBatch& batch = q.batches[in_work.slot];
-    launch_counted(wavefront, wavefront.kernels.shade,
-                   per_ray(rays_in_groups(wavefront.device), in_work.generation, in_work.count), false,
-                   &GenerationVisits::shade, scene.primitives, scene.shape_data, scene.instances,
-                   scene.materials, scene.textures, scene.lights, scene.constants, batch.rays, batch.ids,
-                   q.hits, q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light, q.children,
-                   q.child_ids, q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
+    launch_counted(
+        wavefront, wavefront.kernels.shade,
+        per_ray(rays_in_groups(wavefront.device), in_work.generation, in_work.count), false,
+        [](GenerationVisits& generation) -> KernelVisits& { return generation.shade; }, scene.primitives,
+        scene.shape_data, scene.instances, scene.materials, scene.textures, scene.lights, scene.constants,
+        batch.rays, batch.ids, q.hits, q.hit_ids, out.light, out.pixels, q.shadow_surfaces, q.shadow_light,
+        q.children, q.child_ids, q.outcomes, q.capacity, in_work.count, spawn ? 1U : 0U);
 }
 
 void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out) {
     const DeviceScene& scene = wavefront.scene;
     RayQueues& q = wavefront.queues;
-    launch_counted(wavefront, wavefront.kernels.shadow,
-                   per_traced_ray(wavefront, in_work, rays_in_groups(wavefront.device), SAHL_SHADOW_RAYS,
-                                  SAHL_SHADOW_RAYS),
-                   counts_by_ray(wavefront), &GenerationVisits::shadow, scene.nodes, scene.leaves,
-                   scene.outlines, scene.instances, scene.primitives, scene.materials, scene.lights,
-                   scene.constants, q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light,
-                   q.capacity, in_work.count);
+    TracingKernel& shadow = wavefront.kernels.shadow;
+    launch_counted(
+        wavefront, shadow.kernel,
+        per_traced_ray(shadow.way, in_work, rays_in_groups(wavefront.device), SAHL_SHADOW_RAYS,
+                       SAHL_SHADOW_RAYS),
+        shadow.way == Traversal::scalar,
+        [](GenerationVisits& generation) -> KernelVisits& { return generation.shadow; }, scene.nodes,
+        scene.leaves, scene.outlines, scene.instances, scene.primitives, scene.materials, scene.lights,
+        scene.constants, q.hit_ids, q.shadow_surfaces, q.shadow_light, q.outcomes, out.light, q.capacity,
+        in_work.count);
     if (wavefront.visits != nullptr) {
         add_to_pixels(wavefront, in_work, shadow_rays_of(q, in_work.count));
     }
@@ -157,10 +189,11 @@ void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work, Cont
                                           q.block_shadow_rays, out.totals, blocks);
 }
 
-void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting) {
+void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting,
+                    Contributions& out) {
     RayQueues& q = wavefront.queues;
     wavefront.kernels.compact.launch(per_block(in_work), q.children, q.child_ids, q.outcomes, q.block_counts,
-                                     next.rays, next.ids, waiting.rays, waiting.ids, q.capacity,
+                                     next.rays, next.ids, waiting.rays, waiting.ids, out.totals, q.capacity,
                                      in_work.count, compact_blocks(in_work.count));
 }
 

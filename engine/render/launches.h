@@ -13,6 +13,8 @@
 
 namespace sahl {
 
+class IncoherentIntersect;
+
 /// The files of kernels/ that WavefrontKernels are in.
 std::vector<std::string> wavefront_sources(Traversal traversal);
 
@@ -23,12 +25,27 @@ Program build_wavefront_program(Device& device);
 /// VisitCounter.
 Program build_counting_program(Device& device, Traversal traversal);
 
+/// The file of kernels/ that the kernel for incoherent batches is in, and a program of it, which counts or
+/// not.
+std::vector<std::string> incoherent_sources(Traversal traversal);
+Program build_incoherent_program(Device& device, bool counting);
+
+/// A kernel that walks through the tree.
+struct TracingKernel {
+    Traversal way;
+    Kernel kernel;
+};
+/// "intersect" or "shadow" of `program`, which has it that way.
+TracingKernel tracing_kernel(const char* name, Traversal way, Program& program);
+
 /// The kernels of kernels/*.cl. What no launch asks for is never compiled.
 struct WavefrontKernels {
     WavefrontKernels(Traversal traversal, Program& program);
+    /// With a kernel of another program.
+    WavefrontKernels(Traversal traversal, Program& program, TracingKernel intersecting);
 
-    Traversal traversal;
-    Kernel generate, intersect, shade, shadow;
+    Kernel generate, shade;
+    TracingKernel intersect, shadow;
     Kernel count_children, sum_children, compact;
 };
 
@@ -38,7 +55,8 @@ struct Wavefront {
     WavefrontKernels& kernels;
     const DeviceScene& scene;
     RayQueues& queues;
-    VisitCounter* visits = nullptr;  ///< of counting kernels
+    VisitCounter* visits = nullptr;             ///< of counting kernels
+    IncoherentIntersect* incoherent = nullptr;  ///< nothing: all batches have the same kernel
 };
 
 /// A batch that waits to be traced or is in work.
@@ -46,6 +64,7 @@ struct WaitingBatch {
     std::uint32_t slot;  ///< in RayQueues::batches
     std::uint32_t count;
     std::uint32_t generation;
+    bool coherent = true;  ///< whether neighbours keep together
 };
 
 /// Rays of a work-item of kernels that take them in groups of SAHL_LANES (kernels/lanes.h).
@@ -67,12 +86,13 @@ void launch_shadow(Wavefront& wavefront, const WaitingBatch& in_work, Contributi
 /// The children and shadow rays of each block of parents.
 void launch_count_children(Wavefront& wavefront, const WaitingBatch& in_work);
 
-/// The places of each block's children, and the totals into `out`.
+/// The places of each block's children, and the totals of `out` but for their ways.
 void launch_sum_children(Wavefront& wavefront, const WaitingBatch& in_work, Contributions& out);
 
 /// The children into `next`, which may be the batch in work (children are staged), and what it cannot
-/// hold into `waiting`.
-void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting);
+/// hold into `waiting`; their ways into the totals of `out`.
+void launch_compact(Wavefront& wavefront, const WaitingBatch& in_work, RayBatch& next, RayBatch& waiting,
+                    Contributions& out);
 
 /// The parts that parents are compacted by.
 constexpr std::uint32_t compact_blocks(std::uint32_t count) {

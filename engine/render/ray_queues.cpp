@@ -29,7 +29,7 @@ struct Sizes {
     std::size_t outcomes = array;
     std::size_t block_counts = 2 * blocks * word;
     std::size_t block_shadow_rays = blocks * word;
-    std::size_t totals = 3 * word;
+    std::size_t totals = SAHL_TOTALS * word;
     std::size_t light = 3 * array;
     std::size_t pixels = array;
 

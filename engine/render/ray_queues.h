@@ -20,7 +20,7 @@ struct RayBatch {
 struct Contributions {
     Buffer light;   ///< to add to the film: three float arrays
     Buffer pixels;  ///< that it goes to
-    Buffer totals;  ///< see sum_children
+    Buffer totals;  ///< SAHL_TOTAL_*
 };
 
 /// Waves whose ray trees are traced in turn, so that the device has work of one while the host looks at what

@@ -10,6 +10,7 @@
 #include "engine/core/host_steps.h"
 #include "engine/render/camera_constants.h"
 #include "engine/render/explain.h"
+#include "engine/render/incoherent_intersect.h"
 #include "engine/render/trace_aovs.h"
 #include "engine/render/wavefront.h"
 #include "engine/self_test/first_use.h"
@@ -48,7 +49,8 @@ struct Renderer::Impl {
         : device(on),
           cameras(scene.cameras),
           program(build_wavefront_program(on)),
-          kernels(on.traversal(), program) {
+          kernels(on.traversal(), program),
+          incoherent(on, program, kernels) {
         test_before_first_use(on, program, kernels);
         device_scene = make_device_scene(on, scene, job, quality);
     }
@@ -68,12 +70,16 @@ struct Renderer::Impl {
         const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
         Program counting = build_counting_program(device, traversal);
         WavefrontKernels counting_kernels(traversal, counting);
+        IncoherentIntersect counting_incoherent(device, counting, counting_kernels);
+        const bool by_batch = traversal == device.traversal() && incoherent.is_built();
+        if (by_batch) counting_incoherent.build(true);
         Film film(device.memory(), crop.x1 - crop.x0, crop.y1 - crop.y0);
         RayQueues queues(device, batch_size(settings, samples), settings.depth,
                          device_scene.constants.light_count);
         VisitCounter visits(device, queues.capacity, settings.depth);
         visits.pixels = std::move(by_pixel);
         Wavefront wavefront{device, counting_kernels, device_scene, queues, &visits};
+        if (by_batch) wavefront.incoherent = &counting_incoherent;
         trace_waves(wavefront, camera_constants(cameras[settings.camera], settings.resolution), settings,
                     crop, film, {}, stop, {});
         return visits;
@@ -108,6 +114,7 @@ struct Renderer::Impl {
     std::vector<Camera> cameras;
     Program program;
     WavefrontKernels kernels;
+    IncoherentIntersect incoherent;
     DeviceScene device_scene;
     std::optional<Program> aov_program{};
 };
@@ -151,11 +158,14 @@ RenderStatistics Renderer::render(const RenderSettings& settings, Film& film,
                        impl_->device_scene.constants.light_count);
     }
     Wavefront wavefront{impl_->device, impl_->kernels, impl_->device_scene, *queues};
+    wavefront.incoherent = &impl_->incoherent;
+    impl_->incoherent.begin_image();
     RenderStatistics statistics =
         trace_waves(wavefront, camera, settings, crop, film, progress, stop, checkpoints);
     const HostStep step("release");
     queues.reset();
     impl_->program.store_binary();  // now that each kernel has been compiled
+    impl_->incoherent.store_binary();
     return statistics;
 }
 

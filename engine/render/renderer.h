@@ -74,7 +74,8 @@ public:
     RenderStatistics render(const RenderSettings& settings, Film& film, const ProgressCallback& progress = {},
                             const std::stop_token& stop = {}, const Checkpoints& checkpoints = {});
 
-    /// What the rays of the image of `settings` visit, by generation. Compiles kernels that count.
+    /// What the rays of the image of `settings` visit, by generation, with the kernels that were needed so
+    /// far. Compiles kernels that count.
     std::vector<GenerationVisits> count_visits(const RenderSettings& settings);
 
     /// What `aovs` ask for, in their order, of the camera, the crop and the samples of `settings`; costs also

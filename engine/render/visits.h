@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace sahl {
@@ -14,12 +16,23 @@ struct KernelVisits {
     std::uint64_t flop = 0;
 };
 
-struct GenerationVisits {
-    KernelVisits intersect;
-    KernelVisits shadow;
+struct IntersectVisits {
+    KernelVisits visits{};
+    std::uint64_t rays = 0;
     std::uint64_t hits = 0;  ///< rays that meet something
-    std::uint64_t lit = 0;   ///< shadow rays that reach their light
-    KernelVisits shade{};    ///< flop alone: shading visits no tree
+};
+
+struct GenerationVisits {
+    std::map<std::string, IntersectVisits> intersect{};  ///< by the name of the way of traversal
+    KernelVisits shadow{};
+    std::uint64_t lit = 0;  ///< shadow rays that reach their light
+    KernelVisits shade{};   ///< flop alone: shading visits no tree
+
+    std::uint64_t hits() const {
+        std::uint64_t sum = 0;
+        for (const auto& [way, of_way] : intersect) sum += of_way.hits;
+        return sum;
+    }
 };
 
 /// Sums by pixel, over its samples, generations and lights, in the order of a film; 2^32 - 1 stands for

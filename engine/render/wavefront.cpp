@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/core/host_steps.h"
+#include "engine/render/incoherent_intersect.h"
 
 namespace sahl {
 namespace {
@@ -37,11 +38,13 @@ void add_to_film(PendingContributions pending, std::uint32_t capacity, Film& fil
              light + 2 * std::size_t{capacity});
 }
 
-std::array<std::uint32_t, 3> wait_for(Mapping<std::uint32_t> mapped) {
+std::array<std::uint32_t, SAHL_TOTALS> wait_for(Mapping<std::uint32_t> mapped) {
     const HostStep step("wait");
     Mapping<std::uint32_t> totals(std::move(mapped));  // given back within the step
     totals.wait();
-    return {totals[0], totals[1], totals[2]};
+    std::array<std::uint32_t, SAHL_TOTALS> result{};
+    std::copy_n(totals.begin(), result.size(), result.begin());
+    return result;
 }
 
 /// A wave on its way: its ray trees batch by batch, the deepest first, one batch on the device at a time.
@@ -75,15 +78,18 @@ public:
         OnDevice done = std::move(*on_device_);
         on_device_.reset();
         const WaitingBatch batch = done.batch;
-        const std::array<std::uint32_t, 3> totals = wait_for(std::move(done.totals));
+        const std::array<std::uint32_t, SAHL_TOTALS> totals = wait_for(std::move(done.totals));
         GenerationCounts& counts = statistics.generations[batch.generation];
         counts.rays += batch.count;
-        counts.shadow_rays += totals[1] | std::uint64_t{totals[2]} << 32U;
+        counts.shadow_rays +=
+            totals[SAHL_TOTAL_SHADOW_RAYS] | std::uint64_t{totals[SAHL_TOTAL_SHADOW_RAYS + 1]} << 32U;
         const std::uint32_t capacity = wavefront_.queues.capacity;
-        const std::uint32_t children = batch.generation < depth_ ? totals[0] : 0;
-        if (children > capacity) stack_.push_back({take_slot(), children - capacity, batch.generation + 1});
+        const std::uint32_t children = batch.generation < depth_ ? totals[SAHL_TOTAL_CHILDREN] : 0;
+        const std::uint32_t generation = batch.generation + 1;
+        const bool coherent = are_coherent(totals);
+        if (children > capacity) stack_.push_back({take_slot(), children - capacity, generation, coherent});
         if (children > 0) {
-            stack_.push_back({batch.slot, std::min(children, capacity), batch.generation + 1});
+            stack_.push_back({batch.slot, std::min(children, capacity), generation, coherent});
         } else {
             free_slots_.push_back(batch.slot);
         }
@@ -122,14 +128,15 @@ private:
         launch_count_children(wavefront_, batch);
         launch_sum_children(wavefront_, batch, out);
         if (spawn) {
-            launch_compact(wavefront_, batch, queues.batches[batch.slot], queues.batches[free_slots_.back()]);
+            launch_compact(wavefront_, batch, queues.batches[batch.slot], queues.batches[free_slots_.back()],
+                           out);
         }
         const std::size_t channels = 3 * std::size_t{queues.capacity};
         on_device_.emplace(
             OnDevice{batch,
                      {out.light.enqueue_map<float>(MapMode::read, channels),
                       out.pixels.enqueue_map<std::uint32_t>(MapMode::read, batch.count), batch.count},
-                     out.totals.enqueue_map<std::uint32_t>(MapMode::read, 3)});
+                     out.totals.enqueue_map<std::uint32_t>(MapMode::read, SAHL_TOTALS)});
         wavefront_.device.flush();
     }
 

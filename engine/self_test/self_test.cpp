@@ -96,6 +96,21 @@ SelfTestReport test_wavefront(Bench& bench, std::span<const TestWave> waves) {
     return {tests.in_order()};
 }
 
+/// The kernel of batches whose rays go that way, among the others of `program`, which have passed.
+KernelTest test_incoherent(Device& device, Program& program, Traversal way) {
+    Program incoherent = build_incoherent_program(device, false);
+    WavefrontKernels kernels(device.traversal(), program, tracing_kernel("intersect", way, incoherent));
+    Bench bench(device, kernels);
+    SelfTestReport report = test_wavefront(bench, test_waves());
+    const KernelTest* failed = report.failed();
+    if (failed == nullptr) incoherent.record_self_test();
+    const auto intersect = std::find_if(report.kernels.begin(), report.kernels.end(),
+                                        [](const KernelTest& test) { return test.kernel == "intersect"; });
+    KernelTest test = failed != nullptr ? *failed : *intersect;
+    test.kernel = fmt::format("intersect, {}", name_of(way));
+    return test;
+}
+
 KernelTest test_aovs(Bench& bench, Kernel& describe) {
     KernelTest test{"describe"};
     for (const TestWave& wave : test_waves()) {
@@ -144,6 +159,10 @@ SelfTestReport run_self_test(Device& device) {
     SelfTestReport report = test_wavefront(bench, test_waves());
     if (report.failed() != nullptr) return report;
     program.record_self_test();
+    if (const Traversal way = device.incoherent_traversal(); way != device.traversal()) {
+        report.kernels.push_back(test_incoherent(device, program, way));
+        if (report.failed() != nullptr) return report;
+    }
     Program aov_program = build_aov_program(device);
     Kernel describe = aov_program.kernel("describe");
     report.kernels.push_back(test_aovs(bench, describe));

@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -44,6 +48,26 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> child_order(RayQueues& queu
     return order;
 }
 
+/// Of each family of children, a block's of one kind, the octants and axes that they go along, one bit each.
+std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> ways_of(
+    RayQueues& queues, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& order) {
+    const Arrays<float> rays(queues.children, queues.capacity, 2 * SAHL_RAY_FLOATS);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> ways;
+    for (const auto& [parent, kind] : order) {
+        std::array<float, 3> length{};
+        std::uint32_t octant = 0;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const float part = rays.at(kind * SAHL_RAY_FLOATS + SAHL_RAY_DIRECTION + k, parent);
+            length[k] = std::fabs(part);
+            if (std::signbit(part)) octant |= 1U << k;
+        }
+        const auto axis =
+            static_cast<std::uint32_t>(std::max_element(length.begin(), length.end()) - length.begin());
+        ways[{kind, parent / SAHL_COMPACT_BLOCK}] |= 1U << (8 * axis + octant);
+    }
+    return ways;
+}
+
 }  // namespace
 
 bool test_count_children(KernelTest& test, Wavefront& wavefront, const Generation& generation) {
@@ -82,7 +106,7 @@ bool test_sum_children(KernelTest& test, Wavefront& wavefront, const Generation&
     for (const Block& block : blocks) shadow_rays += block.shadow_rays;
     const std::uint32_t sums[] = {children, shadow_rays, 0};
     const Words found_places(queues.block_counts, places.size(), 1);
-    const Words totals(queues.contributions[0].totals, 3, 1);
+    const Words totals(queues.contributions[0].totals, SAHL_TOTALS, 1);
     return check_exact(
                test, "place of the children of block", places.size(),
                [&](std::size_t i) { return places[i]; },
@@ -98,7 +122,8 @@ bool test_compact(KernelTest& test, Wavefront& wavefront, const Generation& gene
     const std::size_t capacity = queues.capacity;
     const auto order = child_order(queues, generation.in_work.count);
     children = static_cast<std::uint32_t>(order.size());
-    launch_compact(wavefront, generation.in_work, queues.batches[0], queues.batches[1]);
+    launch_compact(wavefront, generation.in_work, queues.batches[0], queues.batches[1],
+                   queues.contributions[0]);
     // Floats as the words that they are: moving changes no bit.
     const auto compare = [&](Buffer& staged, Buffer& next, Buffer& waiting, std::size_t arrays) {
         const Words from(staged, capacity, 2 * arrays);
@@ -118,7 +143,15 @@ bool test_compact(KernelTest& test, Wavefront& wavefront, const Generation& gene
     };
     RayBatch& next = queues.batches[0];
     RayBatch& waiting = queues.batches[1];
-    return compare(queues.children, next.rays, waiting.rays, SAHL_RAY_FLOATS) &&
+    const auto ways = ways_of(queues, order);
+    std::uint32_t sum = 0;
+    for (const auto& [family, of_family] : ways) sum += static_cast<std::uint32_t>(std::popcount(of_family));
+    const std::uint32_t sums[] = {static_cast<std::uint32_t>(ways.size()), sum};
+    const Words totals(queues.contributions[0].totals, SAHL_TOTALS, 1);
+    return check_exact(
+               test, "total (families of children, their ways)", 2, [&](std::size_t i) { return sums[i]; },
+               [&](std::size_t i) { return totals.at(0, SAHL_TOTAL_FAMILIES + i); }) &&
+           compare(queues.children, next.rays, waiting.rays, SAHL_RAY_FLOATS) &&
            compare(queues.child_ids, next.ids, waiting.ids, SAHL_RAY_UINTS);
 }
 

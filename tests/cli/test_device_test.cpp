@@ -50,7 +50,8 @@ const std::vector<Fault> one_a_kernel{
      "SAHL_LIGHT_DIRECTIONAL ? INFINITY : 2.0f"},
     {"count_children", "compact.cl", "block_count + block] = transmitted",
      "block_count + block] = transmitted + 1u"},
-    {"sum_children", "compact.cl", "totals[0] = children", "totals[0] = children - 1u"},
+    {"sum_children", "compact.cl", "totals[SAHL_TOTAL_CHILDREN] = children",
+     "totals[SAHL_TOTAL_CHILDREN] = children - 1u"},
     {"compact", "compact.cl", "next[to + k] = from[place[k]]", "next[to + k] = from[place[0]]"},
     {"describe", "aov.cl", "turned ? facing : surfaces.ns", "surfaces.ns"},
 };

@@ -29,6 +29,11 @@ std::uint64_t sum_of(const std::vector<std::uint32_t>& counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
+const KernelVisits& packets_of(const GenerationVisits& visits) {
+    REQUIRE(visits.intersect.size() == 1);
+    return visits.intersect.at("packet").visits;
+}
+
 constexpr Aov costs[] = {Aov::cost_rays, Aov::cost_nodes};
 
 }  // namespace
@@ -39,13 +44,13 @@ TEST_CASE("visits: of one sphere packets open the root once for 128 rays", "[ren
     const std::vector<GenerationVisits> visits = renderer.count_visits(settings);
     REQUIRE(visits.size() == 1);
     const std::uint64_t rays = 64 * 64;
-    CHECK(visits[0].hits == rays);
+    CHECK(visits[0].hits() == rays);
     CHECK(visits[0].lit == rays);  // nothing is between hit and light
-    CHECK(visits[0].intersect.nodes >= rays / 128);
-    CHECK(visits[0].intersect.nodes <= rays);
-    CHECK(visits[0].intersect.leaves == visits[0].intersect.nodes);
-    CHECK(visits[0].intersect.leaf_bytes == visits[0].intersect.leaves * sizeof(device::SphereBlock));
-    CHECK(visits[0].intersect.flop > rays * 6);
+    CHECK(packets_of(visits[0]).nodes >= rays / 128);
+    CHECK(packets_of(visits[0]).nodes <= rays);
+    CHECK(packets_of(visits[0]).leaves == packets_of(visits[0]).nodes);
+    CHECK(packets_of(visits[0]).leaf_bytes == packets_of(visits[0]).leaves * sizeof(device::SphereBlock));
+    CHECK(packets_of(visits[0]).flop > rays * 6);
     // Additions, multiplications and divisions of shading: the background; the ray in full, position, offset
     // and side; the sphere; what it emits; the lamp's direction, its light, and the cosine of it.
     CHECK(visits[0].shade.flop == rays * (3 + 27 + 55 + 6 + 33));
@@ -56,9 +61,9 @@ TEST_CASE("visits: rays that miss everything open the root alone", "[render]") {
     scene.cameras[0].look_at = {0, 0, 1};
     Renderer renderer(test_device(), scene);
     const std::vector<GenerationVisits> visits = renderer.count_visits(square_settings(64, 0));
-    CHECK(visits[0].hits == 0);
-    CHECK(visits[0].intersect.nodes >= 64 * 64 / 128);
-    CHECK(visits[0].intersect.leaves == 0);
+    CHECK(visits[0].hits() == 0);
+    CHECK(packets_of(visits[0]).nodes >= 64 * 64 / 128);
+    CHECK(packets_of(visits[0]).leaves == 0);
     CHECK(visits[0].shadow.nodes == 0);
     CHECK(visits[0].shade.flop == 64 * 64 * 3);
 }
@@ -99,7 +104,7 @@ TEST_CASE("visits: costs of pixels are the rays of the render, and the nodes of 
     Device one_by_one(ray_by_ray);
     std::uint64_t nodes = 0;
     for (const GenerationVisits& visits : Renderer(one_by_one, scene).count_visits(settings)) {
-        nodes += visits.intersect.nodes + visits.shadow.nodes;
+        nodes += visits.intersect.at("scalar").visits.nodes + visits.shadow.nodes;
     }
     CHECK(sum_of(images[1].uints) == nodes);
 

@@ -41,8 +41,8 @@ Measurement measurement() {
     m.frames = {frame(1), frame(3), frame(1)};
     m.generations = {{100, 80}, {40, 10}};
     m.visits.resize(2);
-    m.visits[0] = {{500, 300, 3000, 20000}, {80, 40, 400, 1000}, 90, 60};
-    m.visits[1] = {{400, 200, 2000, 10000}, {30, 20, 200, 500}, 10, 10};
+    m.visits[0] = {{{"packet", {{500, 300, 3000, 20000}, 100, 90}}}, {80, 40, 400, 1000}, 60};
+    m.visits[1] = {{{"stream", {{400, 200, 2000, 10000}, 40, 10}}}, {30, 20, 200, 500}, 10};
     m.lights = 1;
     return m;
 }
@@ -129,6 +129,33 @@ TEST_CASE("profile: shading has the bytes that are declared, and the operations 
     CHECK(shade.flop_per_ray == Approx(7000 / 40.0));
     CHECK(shade.gflop_per_s == Approx(7000 / 1e6));
     CHECK(profile.generation_totals[1].measures.flop_per_ray);
+}
+
+TEST_CASE("profile: of a generation whose batches go different ways each row has its own rays", "[profile]") {
+    Measurement m = measurement();
+    m.visits[1].intersect = {{"packet", {{900, 300, 3000, 6000}, 30, 8}},
+                             {"stream", {{400, 200, 2000, 10000}, 10, 2}}};
+    for (TimelineRecord& frame : m.frames) {
+        frame.launches.push_back(launch("intersect_packet", 1, 30, 15 * ms, 16 * ms));
+    }
+    m.frames[1].launches.back().started_ns = 50 * ms;
+    m.frames[1].launches.back().ended_ns = 51 * ms;
+    const Profile profile = summarize(m);
+    const auto way = [&](const std::string& variant) {
+        const auto row = std::find_if(profile.rows.begin(), profile.rows.end(), [&](const ProfileRow& r) {
+            return r.kernel == "intersect" && r.variant == variant && r.generation == 1;
+        });
+        REQUIRE(row != profile.rows.end());
+        return row->measures;
+    };
+    CHECK(way("packet").rays_in == 30);
+    CHECK(way("packet").rays_out == 8);
+    CHECK(way("packet").node_visits_per_ray == Approx(30));
+    CHECK(way("packet").flop_per_ray == Approx(6000 / 30.0 + 47));
+    CHECK(way("stream").rays_in == 10);
+    CHECK(way("stream").rays_out == 2);
+    CHECK(way("stream").node_visits_per_ray == Approx(40));
+    CHECK(way("stream").bytes_per_ray == Approx((10 * 52 + 400 * 256 + 2000) / 10.0));
 }
 
 TEST_CASE("profile: totals are the sums of rows", "[profile]") {
