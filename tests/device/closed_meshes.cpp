@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "kernels/rays_per_item.h"
+
 namespace sahl::tests {
 namespace {
 
@@ -182,23 +184,40 @@ std::vector<TestRay> rays_at(Random& random, const ClosedMesh& mesh, std::size_t
     const auto pick = [&](std::size_t size) {
         return static_cast<std::size_t>(uniform(random, 0, static_cast<double>(size)));
     };
+    constexpr std::size_t run = SAHL_PACKET_RAYS;
+    const auto in_core = [&] {
+        return vec3(dvec3(mesh.center) + static_cast<double>(mesh.core) * in_ball(random));
+    };
+    const auto far_off = [&] {
+        const double far = static_cast<double>(mesh.core) * std::pow(10.0, uniform(random, 1, 5));
+        return vec3(dvec3(mesh.center) + far * unit_vector(random));
+    };
+    vec3 eye(0), far_eye(0);
+    std::size_t first_face = 0;
     while (rays.size() < count) {
-        const auto& face = mesh.faces[pick(mesh.faces.size())];
+        const std::size_t i = rays.size();
+        const bool together = i / run % 2 == 1;
+        if (i % run == 0) {
+            eye = in_core();
+            far_eye = far_off();
+            first_face = pick(mesh.faces.size());
+        }
+        const std::size_t kind = together ? i / run / 2 % 4 : i % 4;
+        const std::size_t face_index =
+            together ? (first_face + pick(16)) % mesh.faces.size() : pick(mesh.faces.size());
+        const auto& face = mesh.faces[face_index];
         const std::size_t corner = pick(face.size());
         const dvec3 a(mesh.vertices[face[corner]]), b(mesh.vertices[face[(corner + 1) % face.size()]]);
-        const std::size_t kind = rays.size() % 4;
-        const vec3 in_core(dvec3(mesh.center) + static_cast<double>(mesh.core) * in_ball(random));
-        const vec3 aim =
-            kind == 0 ? vec3(a)
-            : kind == 1
-                ? vec3(a + uniform(random, 0, 1) * (b - a))
-                : vec3(dvec3(mesh.center) + unit_vector(random) * static_cast<double>(mesh.core) * 10.0);
-        TestRay ray{in_core, aim - in_core, SAHL_NO_PRIMITIVE};
-        if (kind == 3) {
-            // From far outside, through the core.
-            const double far = static_cast<double>(mesh.core) * std::pow(10.0, uniform(random, 1, 5));
-            ray.origin = vec3(dvec3(in_core) + far * unit_vector(random));
-            ray.direction = in_core - ray.origin;
+        TestRay ray{together ? eye : in_core(), vec3(0)};
+        if (kind == 0) {
+            ray.direction = vec3(a) - ray.origin;
+        } else if (kind == 1) {
+            ray.direction = vec3(a + uniform(random, 0, 1) * (b - a)) - ray.origin;
+        } else if (kind == 2) {
+            ray.direction = vec3(static_cast<double>(mesh.core) * 10.0 * unit_vector(random));
+        } else {
+            ray.origin = together ? far_eye : far_off();
+            ray.direction = in_core() - ray.origin;
         }
         if (glm::dot(ray.direction, ray.direction) > 0) rays.push_back(ray);
     }

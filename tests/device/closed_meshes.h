@@ -34,8 +34,9 @@ ClosedMesh crumpled(ClosedMesh mesh, float grid);
 ClosedMesh zigzag_cube(Random& random, double half, const glm::dvec3& center);
 ClosedMesh quadrangle_cube(Random& random, int cuts, double half, const glm::dvec3& center);
 
-/// Rays that have to hit the mesh: from its core or from far outside through its core, at vertices, at points
-/// of edges and at random.
+/// Rays that have to hit the mesh: from its core at vertices, at points of edges and at random, or from far
+/// outside through its core. Packet by packet they go any way, or all start at one point and those at
+/// vertices and edges go to neighbouring faces.
 std::vector<TestRay> rays_at(Random& random, const ClosedMesh& mesh, std::size_t count);
 
 }  // namespace sahl::tests

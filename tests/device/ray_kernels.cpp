@@ -32,13 +32,57 @@ kernel void brute_force(const global uchar* leaves, const global float* outlines
     }
 }
 
-kernel void occlusion(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
-                      const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
-                      global uint* out, const uint count) {
+kernel void occlusion_scalar(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
+                             const global DeviceInstance* instances, const float extent, const global float* rays,
+                             const global uint* ray_ids, const global float* t_max, global uint* out,
+                             const uint capacity, const uint count) {
     const Bvh bvh = {nodes, leaves, outlines, instances, extent};
     TEST_FOR_EACH(i, count) {
-        Ray ray = load_ray(rays, ray_ids, count, i);
-        out[i] = any_hit(&bvh, &ray, t_max);
+        Ray ray = load_ray(rays, ray_ids, capacity, i);
+        out[i] = any_hit(&bvh, &ray, t_max[i]);
+    }
+}
+
+static inline void load_list(ShadowRays* list, const global float* rays, const global uint* ray_ids,
+                             const global float* t_max, uint capacity, uint first, uint count) {
+    list->count = min(count - first, SAHL_SHADOW_RAYS);
+    for (uint k = 0; k < list->count; ++k) {
+        const Ray ray = load_ray(rays, ray_ids, capacity, first + k);
+        for (uint axis = 0; axis < 3u; ++axis) {
+            list->origin[axis][k] = ((const float*)&ray.origin)[axis];
+            list->direction[axis][k] = ((const float*)&ray.direction)[axis];
+        }
+        list->t_max[k] = t_max[first + k];
+        list->start_primitive[k] = ray.exclude;
+        list->start_instance[k] = ray.instance;
+    }
+}
+
+kernel void occlusion_packet(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
+                             const global DeviceInstance* instances, const float extent, const global float* rays,
+                             const global uint* ray_ids, const global float* t_max, global uint* out,
+                             const uint capacity, const uint count) {
+    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        ShadowRays list;
+        load_list(&list, rays, ray_ids, t_max, capacity, first, count);
+        occlude_by_packets(&bvh, &list);
+        for (uint k = 0; k < list.count; ++k) { out[first + k] = list.occlusion[k]; }
+    }
+}
+
+kernel void occlusion_stream(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
+                             const global DeviceInstance* instances, const float extent, const global float* rays,
+                             const global uint* ray_ids, const global float* t_max, global uint* out,
+                             const uint capacity, const uint count) {
+    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
+    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
+    if (first < count) {
+        ShadowRays list;
+        load_list(&list, rays, ray_ids, t_max, capacity, first, count);
+        occlude_by_stream(&bvh, &list);
+        for (uint k = 0; k < list.count; ++k) { out[first + k] = list.occlusion[k]; }
     }
 }
 

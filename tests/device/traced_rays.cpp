@@ -258,6 +258,38 @@ std::vector<glm::vec3> RayTracer::arriving(const DeviceScene& scene, const std::
     return result;
 }
 
+std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                            const std::vector<float>& t_max) {
+    Batch batch = upload(rays, guard_rays);
+    const Buffer ends = scalar().upload(t_max);
+    Buffer out(device(), batch.capacity * sizeof(Occlusion), "occlusion");
+    std::vector<Occlusion> wanted;
+    for (Version& version : versions_) {
+        for (const char* traversal : traversals) {
+            fill(out);
+            const std::string kernel = std::string("occlusion_") + traversal;
+            version.runner.run(kernel, batch.count, scene.nodes, scene.leaves, scene.outlines,
+                               scene.instances, scene.constants.extent, batch.rays, batch.ids, ends, out,
+                               batch.capacity);
+            const auto met = KernelRunner::download<Occlusion>(out, batch.count);
+            if (wanted.empty()) wanted = met;
+            const auto first = std::mismatch(met.begin(), met.end(), wanted.begin()).first - met.begin();
+            if (first < batch.count)
+                FAIL_CHECK(kernel << ' ' << version.options << " differs, first in ray " << first << " of "
+                                  << batch.count);
+            if (!is_filled_behind(out, batch.count, batch.capacity))
+                FAIL_CHECK(kernel << ' ' << version.options << " writes behind its " << batch.count
+                                  << " rays");
+        }
+    }
+    return wanted;
+}
+
+std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                            float t_max) {
+    return occlusion(scene, rays, std::vector(rays.size(), t_max));
+}
+
 std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vector<TestRay>& rays) {
     Batch batch = upload(rays);
     const Leaves leaves = all_leaves(scene);
@@ -266,14 +298,6 @@ std::vector<TestHit> RayTracer::brute_force(DeviceScene& scene, const std::vecto
                  static_cast<std::uint32_t>(leaves.children.size()), scene.constants.extent, batch.rays,
                  batch.ids, batch.hits, batch.hit_ids);
     return download(batch);
-}
-
-std::vector<Occlusion> RayTracer::occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
-                                            float t_max) {
-    Batch batch = upload(rays);
-    scalar().run("occlusion", batch.count, scene.nodes, scene.leaves, scene.outlines, scene.instances,
-                 scene.constants.extent, batch.rays, batch.ids, t_max, batch.hit_ids);
-    return KernelRunner::download<Occlusion>(batch.hit_ids, batch.count);
 }
 
 std::vector<TestWalk> RayTracer::walk(const DeviceScene& scene, const std::vector<TestRay>& rays,

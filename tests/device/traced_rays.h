@@ -97,12 +97,17 @@ public:
     std::vector<glm::vec3> arriving(const DeviceScene& scene, const std::vector<TestLitPoint>& points,
                                     const std::vector<glm::vec3>& brought);
 
+    /// What rays meet up to `t_max`, which has one number for each ray, by the any-hit functions behind
+    /// kernels/shadow_*.cl.
+    std::vector<Occlusion> occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays,
+                                     const std::vector<float>& t_max);
+    /// The same with one `t_max` for all rays.
+    std::vector<Occlusion> occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays, float t_max);
+
     // The rest is asked of the functions behind intersect_scalar and shadow_scalar, in the first version.
 
     /// Closest hits by offering each ray all blocks of all leaves, without the tree.
     std::vector<TestHit> brute_force(DeviceScene& scene, const std::vector<TestRay>& rays);
-    /// any_hit() up to `t_max`.
-    std::vector<Occlusion> occlusion(const DeviceScene& scene, const std::vector<TestRay>& rays, float t_max);
     std::vector<TestWalk> walk(const DeviceScene& scene, const std::vector<TestRay>& rays, float t_max);
     /// Of hits; the others' surfaces mean nothing.
     std::vector<TestSurface> surfaces(const DeviceScene& scene, const std::vector<TestRay>& rays,
