@@ -193,6 +193,49 @@ TEST_CASE("shadow rays that lead nowhere meet nothing and do not disturb their n
     CHECK(tracer.arriving(scene, points, brought) == wanted);
 }
 
+TEST_CASE("shadow rays meet what a walk meets before their end, at 0, behind or nowhere too") {
+    RayTracer tracer;
+    Random random(85);
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::vector<float> nowhere{0, -0.0F, -1, -infinity, std::numeric_limits<float>::quiet_NaN()};
+    std::size_t between = 0, ends = 0;
+    for (const bool instanced : {false, true}) {
+        const Soup soup = instanced ? instanced_soup(random, 1, 0) : random_soup(random, 40, 1, 0);
+        const DeviceScene scene = tracer.upload(soup.scene);
+        for (const auto& [name, rays] : ray_sets(random, soup, 1500)) {
+            CAPTURE(instanced, name);
+            const std::vector<TestWalk> walks = tracer.walk(scene, rays, infinity);
+            std::vector<float> t_max;
+            std::vector<Occlusion> wanted;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                // Before all; at a crossing, which is left out; a bit beyond it. Not at the last that a walk
+                // has room for, as there may be more.
+                const std::uint32_t count = std::min(walks[i].count, TestWalk::longest - 1);
+                const float at = walks[i].t[count > 0 ? i % count : 0];
+                t_max.push_back(i % 3 == 0 || count == 0 ? nowhere[i / 3 % nowhere.size()]
+                                : i % 3 == 1             ? at
+                                                         : std::nextafter(at, infinity));
+                Occlusion met = Occlusion::nothing;
+                for (std::uint32_t k = 0; k < walks[i].count && walks[i].t[k] < t_max[i]; ++k) {
+                    const Primitive& primitive = soup.scene.primitives[walks[i].primitives[k]];
+                    const bool clear = soup.scene.materials[primitive.material].transmission != vec3(0);
+                    met = std::max(met, clear ? Occlusion::transparent : Occlusion::opaque);
+                }
+                wanted.push_back(met);
+                between += met != Occlusion::nothing;
+                ends += i % 3 == 1 && count > 0;
+            }
+            CHECK(tracer.occlusion(scene, rays, t_max) == wanted);
+        }
+        for (const float end : nowhere) {
+            for (const TestWalk& walk : tracer.walk(scene, ray_sets(random, soup, 200)[0].rays, end))
+                CHECK(walk.count == 0);
+        }
+    }
+    CHECK(between > 4000);
+    CHECK(ends > 3000);
+}
+
 TEST_CASE("lights of all kinds add up in their order, on top of what has arrived") {
     RayTracer tracer;
     Random random(84);
