@@ -30,7 +30,7 @@ Soup random_soup(Random& random, int count, double size, double offset) {
     return soup;
 }
 
-Soup instanced_soup(Random& random, double size, double offset) {
+Soup instanced_soup(Random& random, double size, double offset, double unit, double flatness) {
     Soup soup;
     Scene& scene = soup.scene;
     const dvec3 center(vec3(offset * unit_vector(random)));
@@ -51,17 +51,21 @@ Soup instanced_soup(Random& random, double size, double offset) {
     };
     add_shapes(0, 6, center, size);
     const std::uint32_t low = oracle::add_group(scene);
-    add_shapes(0, 7, dvec3(0), 1);
+    add_shapes(0, 7, dvec3(0), unit);
     const std::uint32_t high = oracle::add_group(scene);
-    add_shapes(7, 6, dvec3(3, -2, 1), 0.5);
+    add_shapes(7, 6, dvec3(3, -2, 1) / unit, 0.5 / unit);
     const std::uint32_t nest = oracle::add_group(scene);
-    oracle::add_instance(scene, nest, low, somewhere(0.7, dvec3(0), 2));
-    oracle::add_instance(scene, nest, high, somewhere(1, dvec3(0), 2));
+    oracle::add_instance(scene, nest, low, somewhere(0.7 / unit, dvec3(0), 2));
+    oracle::add_instance(scene, nest, high, somewhere(unit, dvec3(0), 2));
     const std::uint32_t outer = oracle::add_group(scene);
     add_shapes(13, 2, dvec3(0), 1);
     oracle::add_instance(scene, outer, nest, somewhere(0.7, dvec3(0), 2));
-    for (const std::uint32_t group : {low, high, nest, outer, low, outer})
-        oracle::add_instance(scene, group, somewhere(size, center, 4 * size));
+    for (const std::uint32_t group : {low, high, nest, outer, low, outer}) {
+        const double scale = group == low ? size / unit : group == high ? size * unit : size;
+        glm::dmat4 transform = somewhere(scale, center, 4 * size);
+        transform[static_cast<int>(group) % 3] /= flatness;
+        oracle::add_instance(scene, group, transform);
+    }
     scene.instances.push_back(scene.instances.front());
 
     const std::vector<glm::dmat4> placements = oracle::instance_placements(scene);

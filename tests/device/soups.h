@@ -19,8 +19,10 @@ struct Soup {
 Soup random_soup(Random& random, int count, double size, double offset);
 
 /// Groups of all kinds of primitives, nested, placed by all kinds of affine transforms beside primitives of
-/// the world, the first instance twice in one place. Targets are in the order of (instance, id).
-Soup instanced_soup(Random& random, double size, double offset);
+/// the world, the first instance twice in one place. Targets are in the order of (instance, id). `unit`: the
+/// size that primitives have in some groups, and the inverse of it in others, which instances undo.
+/// `flatness`: instances are that many times thinner than wide.
+Soup instanced_soup(Random& random, double size, double offset, double unit = 1, double flatness = 1);
 
 /// The same without groups: every instance's primitives in the world by the products of their transforms.
 /// `soup`'s targets name the world's primitives in the same order.

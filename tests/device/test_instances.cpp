@@ -30,7 +30,23 @@ constexpr double kRoundings = 8;
 
 struct Place {
     double size, offset;
+    double unit = 1, flatness = 1;
 };
+
+Soup soup_at(Random& random, const Place& place) {
+    return instanced_soup(random, place.size, place.offset, place.unit, place.flatness);
+}
+
+/// As random_rays(), from no further away than what hit.h says about flat shapes.
+std::vector<TestRay> rays_near(Random& random, const Soup& soup, const Place& place, std::size_t count) {
+    std::vector<TestRay> rays;
+    for (std::size_t i = 0; rays.size() < count; ++i) {
+        const Target& target = soup.targets[i % soup.targets.size()];
+        const TestRay ray = random_ray(random, target);
+        if (reach_of(ray, target) < 1.1e4 * target.size / place.flatness) rays.push_back(ray);
+    }
+    return rays;
+}
 
 using Id = std::pair<std::uint32_t, std::uint32_t>;  ///< instance, primitive
 
@@ -43,13 +59,13 @@ struct Score {
 };
 
 void compare(RayTracer& tracer, Random& random, const Place& place, Score& score) {
-    const Soup soup = instanced_soup(random, place.size, place.offset);
+    const Soup soup = soup_at(random, place);
     const Soup baked = without_instances(soup);
     std::map<Id, std::size_t> target_of;
     for (std::size_t i = 0; i < soup.targets.size(); ++i)
         target_of[{soup.targets[i].instance, soup.targets[i].id}] = i;
     const std::vector<oracle::PlacedShape> shapes = oracle::place_shapes(soup.scene);
-    const std::vector<TestRay> rays = random_rays(random, soup, 600);
+    const std::vector<TestRay> rays = rays_near(random, soup, place, 600);
     std::vector<TestRay> baked_rays = rays;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (rays[i].exclude == SAHL_NO_PRIMITIVE) continue;
@@ -96,11 +112,22 @@ void compare(RayTracer& tracer, Random& random, const Place& place, Score& score
 TEST_CASE("instances are hit where the oracle says and where they would be in the world") {
     RayTracer tracer;
     Random random(61);
-    for (const Place& place :
-         std::vector<Place>{{1, 0}, {1e-3, 0}, {1e3, 0}, {1, 1e3}, {1e-3, 1}, {1e3, 1e6}, {100, 1e6}}) {
+    for (const Place& place : std::vector<Place>{{1, 0},
+                                                 {1e-3, 0},
+                                                 {1e3, 0},
+                                                 {1, 1e3},
+                                                 {1e-3, 1},
+                                                 {1e3, 1e6},
+                                                 {100, 1e6},
+                                                 {1, 0, 1e6},
+                                                 {1, 0, 1e-6},
+                                                 {1e-6, 0, 1e-6},
+                                                 {1, 0, 1, 100},
+                                                 {1, 0, 1e3, 100}}) {
         Score score;
         for (int round = 0; round < (full_tests() ? 40 : 2); ++round) compare(tracer, random, place, score);
-        CAPTURE(place.size, place.offset, score.rays, score.sure, score.hits, score.in_instances);
+        CAPTURE(place.size, place.offset, place.unit, place.flatness, score.rays, score.sure, score.hits,
+                score.in_instances);
         CAPTURE(score.position, score.ng);
         CHECK(score.sure > score.rays / 3);
         CHECK(score.hits > score.rays / 8);
@@ -117,10 +144,11 @@ TEST_CASE("two levels of trees find what a search of all leaves finds, bit for b
     RayTracer tracer;
     Random random(62);
     for (int round = 0; round < (full_tests() ? 20 : 1); ++round) {
-        for (const Place& place : std::vector<Place>{{1, 0}, {1e3, 1e5}, {1e-3, 1e-2}}) {
-            const Soup soup = instanced_soup(random, place.size, place.offset);
+        for (const Place& place :
+             std::vector<Place>{{1, 0}, {1e3, 1e5}, {1e-3, 1e-2}, {1, 0, 1e6, 100}, {1, 0, 1e-6, 1e3}}) {
+            const Soup soup = soup_at(random, place);
             DeviceScene scene = tracer.upload(soup.scene);
-            const std::vector<TestRay> rays = random_rays(random, soup, 40'000);
+            const std::vector<TestRay> rays = rays_near(random, soup, place, 40'000);
             const std::vector<TestHit> hits = tracer.intersect(scene, rays);
             CHECK(differences(rays, hits, tracer.brute_force(scene, rays)) == "");
             CHECK(std::count_if(hits.begin(), hits.end(),

@@ -229,6 +229,29 @@ TEST_CASE("directions of all lengths, from denormal to huge, are traced alike") 
     }
 }
 
+// The bounds are those of kernels/hit.h.
+TEST_CASE("directions times a power of two: the same hits, t divided by it, of primitives of all sizes") {
+    RayTracer tracer;
+    Random random(78);
+    for (const double size : {1e-9, 1e-4, 1.0, 1e4, 1e9}) {
+        const Soup soup = random_soup(random, 48, size, 0);
+        const DeviceScene scene = tracer.upload(soup.scene);
+        std::vector<TestRay> rays = random_rays(random, soup, 20'000);
+        for (TestRay& ray : rays) ray.direction = vec3(glm::normalize(dvec3(ray.direction)));
+        const std::vector<TestHit> unit = tracer.intersect(scene, rays);
+        for (const int power : {-24, -12, 12, 24, 40}) {
+            const double length = std::ldexp(1.0, power);
+            if (length > 1.1e9 * size || size > 1.1e9 * length) continue;
+            CAPTURE(size, power);
+            std::vector<TestRay> scaled = rays;
+            std::vector<TestHit> wanted = unit;
+            for (TestRay& ray : scaled) ray.direction *= static_cast<float>(length);
+            for (TestHit& hit : wanted) hit.t = std::ldexp(hit.t, -power);
+            CHECK(differences(scaled, tracer.intersect(scene, scaled), wanted) == "");
+        }
+    }
+}
+
 TEST_CASE("many primitives in one place are one leaf after the other, and the first is hit") {
     RayTracer tracer;
     for (int kind = 0; kind < shape_kind_count; ++kind) {
