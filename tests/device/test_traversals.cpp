@@ -269,10 +269,13 @@ TEST_CASE("many primitives in one place are one leaf after the other, and the fi
             std::vector<TestRay> rays = random_rays(random, soup, 600);
             for (TestRay& ray : rays) ray.exclude = SAHL_NO_PRIMITIVE;
             const std::vector<TestHit> hits = tracer.intersect(scene, rays);
+            const std::vector<Occlusion> any =
+                tracer.occlusion(scene, rays, std::numeric_limits<float>::infinity());
             int met = 0;
-            for (const TestHit& hit : hits) {
-                met += hit.hit();
-                CHECK((!hit.hit() || hit.primitive == 0));
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                met += hits[i].hit();
+                CHECK((!hits[i].hit() || hits[i].primitive == 0));
+                CHECK((any[i] == Occlusion::opaque) == hits[i].hit());
             }
             CHECK(met > 60);
         }
