@@ -90,6 +90,9 @@ bool test_wave(Bench& bench, const TestWave& wave, WaveTests& tests) {
 
 SelfTestReport test_wavefront(Bench& bench, std::span<const TestWave> waves) {
     WaveTests tests;
+    const WavefrontKernels& kernels = bench.wavefront.kernels;
+    if (const Traversal way = kernels.intersect.way; way != kernels.shadow.way)
+        tests.intersect.kernel = fmt::format("intersect_{}", name_of(way));
     for (const TestWave& wave : waves) {
         if (!test_wave(bench, wave, tests)) break;
     }
@@ -101,14 +104,10 @@ KernelTest test_incoherent(Device& device, Program& program, Traversal way) {
     Program incoherent = build_incoherent_program(device, false);
     WavefrontKernels kernels(device.traversal(), program, tracing_kernel("intersect", way, incoherent));
     Bench bench(device, kernels);
-    SelfTestReport report = test_wavefront(bench, test_waves());
-    const KernelTest* failed = report.failed();
-    if (failed == nullptr) incoherent.record_self_test();
-    const auto intersect = std::find_if(report.kernels.begin(), report.kernels.end(),
-                                        [](const KernelTest& test) { return test.kernel == "intersect"; });
-    KernelTest test = failed != nullptr ? *failed : *intersect;
-    test.kernel = fmt::format("intersect, {}", name_of(way));
-    return test;
+    const SelfTestReport report = test_wavefront(bench, test_waves());
+    if (const KernelTest* failed = report.failed()) return *failed;
+    incoherent.record_self_test();
+    return report.kernels[1];  // behind generate
 }
 
 KernelTest test_aovs(Bench& bench, Kernel& describe) {

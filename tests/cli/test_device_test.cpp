@@ -1,7 +1,9 @@
 // The self-test as a user meets it: before the first image of a device, and by `sahl devices --test`.
-#include <filesystem>
+#include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <random>
 
 #include "tests/cli/sahl_program.h"
 #include "tests/device/test_device_support.h"
@@ -129,21 +131,51 @@ TEST_CASE("self-test: devices --test says of each kernel what was found", "[cli]
     CHECK(contains(text.out, " answers, all right, worst difference "));
 
     const std::vector<nlohmann::json> events = json_lines(place.run({"devices", "--test", "--json"}).out);
-    REQUIRE(events.size() >= one_a_kernel.size() + 1);
-    for (std::size_t i = 0; i < one_a_kernel.size(); ++i) {
+    const std::size_t kernels = one_a_kernel.size() + 1;  // and of batches whose rays go any way
+    REQUIRE(events.size() >= kernels + 1);
+    for (std::size_t i = 0; i < kernels; ++i) {
         CHECK(events[i].at("event") == "kernel_test");
         CHECK(events[i].at("passed") == true);
         CHECK(events[i].at("checked") > 100);
         CHECK(events[i].at("worst_difference") <= events[i].at("allowed_difference"));
     }
-    CHECK(events[one_a_kernel.size()].at("event") == "device_test");
-    CHECK(events[one_a_kernel.size()].at("passed") == true);
+    CHECK(events[kernels].at("event") == "device_test");
+    CHECK(events[kernels].at("passed") == true);
     // It is the same record that renders look at.
     CHECK_FALSE(place.render_tests());
 
     const ProcessResult missing = place.run({"devices", "--test", "--device", "9999"});
     CHECK(missing.status == 4);
     CHECK(contains(missing.err, "9999"));
+}
+
+TEST_CASE(
+    "self-test: the kernel of rays that go any way is tested before its first use, while an image is "
+    "rendered",
+    "[cli][self_test]") {
+    const Place place;
+    // A pile of mirroring balls, each a few pixels large.
+    std::string scene = "v\nfrom 0 0 6\nat 0 0 0\nup 0 1 0\nangle 50\nhither 1\nresolution 320 320\n";
+    scene += "b 0.3 0.5 0.9\nf 1 1 1 0 0.9 30 0 1\n";
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-3, 3);
+    for (int i = 0; i < 2000; ++i)
+        scene += fmt::format("s {} {} {} 0.12\n", uniform(random), uniform(random), uniform(random) / 3);
+    write_file(place.work / "pile.nff", scene);
+    const std::vector<std::string> render{"render", "pile.nff", "-o", "image.png", "--depth", "3"};
+    CHECK(place.run(render).status == 0);
+    fs::remove(place.work / "image.png");
+
+    break_kernel(place.kernels, {"intersect_stream", "traverse_stream.h", "ray->state.inside_of = i + 1u",
+                                 "ray->state.inside_of = i"});
+    const ProcessResult broken = place.run(render);
+    INFO(broken.err);
+    CHECK(broken.status == 4);
+    CHECK(contains(broken.err, "computes wrongly: kernel intersect_stream, "));
+    CHECK_FALSE(fs::exists(place.work / "image.png"));
+    const ProcessResult tested = place.run({"devices", "--test", "--device", "0"});
+    CHECK(tested.status == 4);
+    CHECK(contains(tested.out, "FAILED: kernel intersect_stream is wrong"));
 }
 
 TEST_CASE("self-test: devices --test ends with 4 at a wrong kernel and tests it each time",

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 
+#include "engine/self_test/self_test.h"
 #include "tests/render/rendered.h"
 
 namespace sahl::tests {
@@ -61,6 +62,7 @@ TEST_CASE("choice of traversal: rays that keep together are traced by packets in
 
 TEST_CASE("choice of traversal: rays that part are traced by streams, once they are enough", "[render]") {
     Device& device = test_device();
+    run_self_test(device);  // or its launches would be among the image's
     const Scene scene = balls_of_mirror();
     Renderer renderer(device, scene);
     const RenderSettings settings = square_settings(320, 3);

@@ -31,7 +31,7 @@ TEST_CASE("self-test: this device passes, thousands of rays a kernel", "[self_te
     }
     CHECK(report.failed() == nullptr);
     CHECK(kernels == std::vector<std::string>{"generate", "intersect", "shade", "shadow", "count_children",
-                                              "sum_children", "compact", "describe"});
+                                              "sum_children", "compact", "intersect_stream", "describe"});
 }
 
 TEST_CASE("self-test: it holds less than a megabyte, and nothing behind it", "[self_test]") {
