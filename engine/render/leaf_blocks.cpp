@@ -40,8 +40,8 @@ void set_depth_errors(device::TriangleBlock& block, std::uint32_t count) {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
         float extent[3];
         for (std::uint32_t axis = 0; axis < 3; ++axis) {
-            const auto [lo, hi] = std::minmax({axes[axis][lane], axes[axis][4 + lane], axes[axis][8 + lane]});
-            extent[axis] = hi - lo;
+            const float a = axes[axis][lane], b = axes[axis][4 + lane], c = axes[axis][8 + lane];
+            extent[axis] = std::max(std::max(a, b), c) - std::min(std::min(a, b), c);
         }
         for (std::uint32_t k = 0; k < 3; ++k) {
             const float a = extent[(k + 1) % 3] + extent[k], b = extent[(k + 2) % 3] + extent[k];
