@@ -29,20 +29,15 @@ struct Bin {
     const Tally& exits() const { return tally; }
 };
 
-// Axes first, ... last - 1.
-struct AxisRange {
-    int first;
-    int last;
-};
-
-// A set's primitives by place along each axis and by kind: kinds are the bins of a fourth axis.
-template <class Tally, std::size_t BinCount>
+// A set's primitives by place along one axis or all three, from `first` on, and by kind: kinds are the bins
+// of a fourth axis.
+template <class Tally, std::size_t BinCount, std::size_t AxisCount>
 struct Bins {
-    std::array<std::array<Bin<Tally>, BinCount>, 3> axes;
+    std::array<std::array<Bin<Tally>, BinCount>, AxisCount> axes;
     std::array<Bin<Tally>, std::is_same_v<Tally, AnyKind> ? kind_count : 0> kinds;
 
-    void fill(const Grid& grid, const AxisRange& along, std::span<const BuildPrimitive> primitives) {
-        if (along.last - along.first == 3) {
+    void fill(const Grid& grid, int first, std::span<const BuildPrimitive> primitives) {
+        if constexpr (AxisCount == 3) {
             for (const BuildPrimitive& primitive : primitives) {
                 const Int4 place = grid.bins_at(load_lo(primitive) + load_hi(primitive));
                 for (int axis = 0; axis < 3; ++axis) {
@@ -51,9 +46,8 @@ struct Bins {
                 }
             }
         } else {
-            auto& bins = axes[static_cast<std::size_t>(along.first)];
             for (const BuildPrimitive& primitive : primitives) {
-                bins[static_cast<std::size_t>(grid.bin_of(primitive, along.first))].add(primitive);
+                axes[0][static_cast<std::size_t>(grid.bin_of(primitive, first))].add(primitive);
             }
         }
         if constexpr (std::is_same_v<Tally, AnyKind>) {
@@ -61,31 +55,32 @@ struct Bins {
         }
     }
     void add(const Bins& other) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t axis = 0; axis < AxisCount; ++axis) {
             for (std::size_t i = 0; i < BinCount; ++i) axes[axis][i].add(other.axes[axis][i]);
         }
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) kinds[kind].add(other.kinds[kind]);
     }
-    std::span<const Bin<Tally>> along(int axis) const {
+    std::span<const Bin<Tally>> along(int axis, int first) const {
         if (axis == ObjectSplit::by_kind) return kinds;
-        return axes[static_cast<std::size_t>(axis)];
+        return axes[static_cast<std::size_t>(axis - first)];
     }
 };
 
-template <class Tally, std::size_t BinCount>
+// Along the axes from `first` on.
+template <class Tally, std::size_t BinCount, std::size_t AxisCount>
 ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& summary, const Price& price,
-                 const AxisRange& axes, std::size_t max_side) {
-    using SetBins = Bins<Tally, BinCount>;
+                 int first, std::size_t max_side) {
+    using SetBins = Bins<Tally, BinCount, AxisCount>;
     ObjectSplit split;
     split.grid = make_grid(summary.centroids, BinCount);
     SetBins bins;
     if (primitives.size() < parallel_set_size) {
-        bins.fill(split.grid, axes, primitives);
+        bins.fill(split.grid, first, primitives);
     } else {
         bins = tbb::parallel_reduce(
             tbb::blocked_range<std::size_t>(0, primitives.size(), parallel_grain), SetBins{},
             [&](const tbb::blocked_range<std::size_t>& range, SetBins sum) {
-                sum.fill(split.grid, axes, primitives.subspan(range.begin(), range.size()));
+                sum.fill(split.grid, first, primitives.subspan(range.begin(), range.size()));
                 return sum;
             },
             [](SetBins sum, const SetBins& other) {
@@ -94,14 +89,14 @@ ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& s
             });
     }
     const SideLimits limits{max_side, primitives.size()};
-    for (int axis = axes.first; axis < axes.last; ++axis) {
-        sweep(bins.along(axis), price, axis, limits, split.border);
+    for (int axis = first; axis < first + static_cast<int>(AxisCount); ++axis) {
+        sweep(bins.along(axis, first), price, axis, limits, split.border);
     }
     if constexpr (std::is_same_v<Tally, AnyKind>) {
-        sweep(bins.along(ObjectSplit::by_kind), price, ObjectSplit::by_kind, limits, split.border);
+        sweep(bins.along(ObjectSplit::by_kind, first), price, ObjectSplit::by_kind, limits, split.border);
     }
     if (split.found()) {
-        const auto best = bins.along(split.border.axis);
+        const auto best = bins.along(split.border.axis, first);
         const auto position = static_cast<std::size_t>(split.border.position);
         for (std::size_t i = 0; i < best.size(); ++i) {
             (i < position ? split.left : split.right).extend(best[i].box);
@@ -111,61 +106,30 @@ ObjectSplit find(std::span<const BuildPrimitive> primitives, const SetSummary& s
 }
 
 // Clearing and sweeping bins must not take longer than filling them.
-template <class Tally>
-ObjectSplit find_among(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
-                       const Price& price, const AxisRange& axes, std::size_t max_side) {
-    if (primitives.size() <= 32) return find<Tally, 8>(primitives, summary, price, axes, max_side);
-    if (primitives.size() <= 256) return find<Tally, 16>(primitives, summary, price, axes, max_side);
-    return find<Tally, most_bins>(primitives, summary, price, axes, max_side);
+template <class Tally, std::size_t AxisCount>
+ObjectSplit find_among(std::span<const BuildPrimitive> primitives, const SetSummary& summary, int first,
+                       std::size_t max_side) {
+    const Price price{Price::scale_of(summary.box), primitives.front().kind};
+    if (primitives.size() <= 32)
+        return find<Tally, 8, AxisCount>(primitives, summary, price, first, max_side);
+    if (primitives.size() <= 256)
+        return find<Tally, 16, AxisCount>(primitives, summary, price, first, max_side);
+    return find<Tally, most_bins, AxisCount>(primitives, summary, price, first, max_side);
 }
 
-void add(SetSummary& summary, std::span<const BuildPrimitive> primitives) {
-    for (const BuildPrimitive& primitive : primitives) {
-        const Float4 lo = load_lo(primitive);
-        const Float4 hi = load_hi(primitive);
-        summary.box.extend(lo, hi);
-        summary.centroids.extend(lo + hi, lo + hi);
-        ++summary.counts[primitive.kind];
-    }
+template <class Tally>
+ObjectSplit find_among(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
+                       std::size_t max_side, BuildQuality quality) {
+    if (quality == BuildQuality::high) return find_among<Tally, 3>(primitives, summary, 0, max_side);
+    return find_among<Tally, 1>(primitives, summary, summary.centroids.longest_axis(), max_side);
 }
 
 }  // namespace
 
-bool SetSummary::mixed() const {
-    const auto absent = std::count(counts.begin(), counts.end(), 0U);
-    return static_cast<std::size_t>(absent) + 1 < kind_count;
-}
-
-SetSummary summarise(std::span<const BuildPrimitive> primitives) {
-    if (primitives.size() < parallel_set_size) {
-        SetSummary summary;
-        add(summary, primitives);
-        return summary;
-    }
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, primitives.size(), parallel_grain), SetSummary{},
-        [&](const tbb::blocked_range<std::size_t>& range, SetSummary summary) {
-            add(summary, primitives.subspan(range.begin(), range.size()));
-            return summary;
-        },
-        [](SetSummary summary, const SetSummary& other) {
-            summary.box.extend(other.box);
-            summary.centroids.extend(other.centroids);
-            for (std::size_t kind = 0; kind < kind_count; ++kind) summary.counts[kind] += other.counts[kind];
-            return summary;
-        });
-}
-
 ObjectSplit find_object_split(std::span<const BuildPrimitive> primitives, const SetSummary& summary,
                               std::size_t max_side, BuildQuality quality) {
-    AxisRange axes{0, 3};
-    if (quality == BuildQuality::fast) {
-        const int longest = summary.centroids.longest_axis();
-        axes = {longest, longest + 1};
-    }
-    const Price price{Price::scale_of(summary.box), primitives.front().kind};
-    if (summary.mixed()) return find_among<AnyKind>(primitives, summary, price, axes, max_side);
-    return find_among<OneKind>(primitives, summary, price, axes, max_side);
+    if (summary.mixed()) return find_among<AnyKind>(primitives, summary, max_side, quality);
+    return find_among<OneKind>(primitives, summary, max_side, quality);
 }
 
 }  // namespace sahl

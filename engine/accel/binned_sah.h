@@ -6,22 +6,11 @@
 #include <span>
 
 #include "engine/accel/bvh.h"
-#include "engine/accel/cost_model.h"
+#include "engine/accel/set_summary.h"
 #include "engine/accel/split_sweep.h"
 #include "engine/accel/vector_box.h"
 
 namespace sahl {
-
-struct SetSummary {
-    VectorBox box;
-    VectorBox centroids;  ///< of lo + hi, twice the centroid
-    KindCounts counts{};
-
-    /// Whether there are several kinds.
-    bool mixed() const;
-};
-
-SetSummary summarise(std::span<const BuildPrimitive> primitives);
 
 /// A way to part a set by place (along x, y, z for axis 0..2, of lo + hi) or by kind (axis 3).
 struct ObjectSplit {
@@ -32,9 +21,14 @@ struct ObjectSplit {
     VectorBox right;
 
     bool found() const { return border.found(); }
-    bool goes_left(const BuildPrimitive& primitive) const {
-        if (border.axis == by_kind) return static_cast<std::int32_t>(primitive.kind) < border.position;
-        return grid.bin_of(primitive, border.axis) < border.position;
+    /// Which primitives go left, for a split along x, y or z: the same as bins less than the border's
+    /// position.
+    auto goes_left() const {
+        return [axis = border.axis, origin = grid.origin[border.axis], scale = grid.scale[border.axis],
+                end = static_cast<float>(border.position)](const BuildPrimitive& primitive) {
+            const auto& [lo, hi] = primitive.bounds;
+            return (lo[axis] + hi[axis] - origin) * scale < end;
+        };
     }
 };
 

@@ -5,11 +5,9 @@
 #include <string>
 #include <utility>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "engine/accel/binary_tree.h"
 #include "engine/accel/cost_model.h"
+#include "engine/accel/parallel_chunks.h"
 #include "engine/accel/wide_collapse.h"
 #include "engine/core/error.h"
 
@@ -17,28 +15,26 @@ namespace sahl {
 
 namespace {
 
-void check(const std::vector<BuildPrimitive>& primitives) {
+// Refuses what cannot be built. -0 becomes +0 on the way: as -0 == +0, which of them a minimum keeps would
+// depend on the order.
+void check(std::vector<BuildPrimitive>& primitives) {
     if (primitives.size() > SAHL_MAX_PRIMITIVES) {
         throw Error(ExitCode::scene, "the scene has " + std::to_string(primitives.size()) +
                                          " primitives; the limit is " + std::to_string(SAHL_MAX_PRIMITIVES) +
                                          ": render fewer");
     }
-    for (const BuildPrimitive& primitive : primitives) {
-        if (primitive.kind < kind_count) continue;
-        throw Error(ExitCode::internal, "primitive " + std::to_string(primitive.id) + " is of unknown kind " +
-                                            std::to_string(primitive.kind) + "; please report this");
-    }
-}
-
-// -0 becomes +0: as -0 == +0, which of them a minimum keeps would depend on the order.
-void remove_negative_zeros(std::vector<BuildPrimitive>& primitives) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, primitives.size(), 1u << 14),
-                      [&](const auto& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              for (float& value : primitives[i].bounds.lo) value += 0.0f;
-                              for (float& value : primitives[i].bounds.hi) value += 0.0f;
-                          }
-                      });
+    for_chunks(primitives.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            BuildPrimitive& primitive = primitives[i];
+            if (primitive.kind >= kind_count) {
+                throw Error(ExitCode::internal, "primitive " + std::to_string(primitive.id) +
+                                                    " is of unknown kind " + std::to_string(primitive.kind) +
+                                                    "; please report this");
+            }
+            for (float& value : primitive.bounds.lo) value += 0.0f;
+            for (float& value : primitive.bounds.hi) value += 0.0f;
+        }
+    });
 }
 
 Bounds slot_bounds(const device::BvhNode& node, std::size_t slot) {
@@ -87,7 +83,6 @@ Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& cor
     if (primitives.empty()) {
         bvh.nodes.push_back(empty_node());
     } else {
-        remove_negative_zeros(primitives);
         BinaryTree tree = build_binary_tree(std::move(primitives), corners, quality);
         collapse(tree, bvh);
         bvh.bounds = tree.bounds;

@@ -31,7 +31,7 @@ void swap_ranges(std::span<const std::span<BuildPrimitive>> a, std::span<const s
     });
 }
 
-void partition_by_rank(std::span<BuildPrimitive> primitives, int axis, std::size_t left_size) {
+Parted partition_by_rank(std::span<BuildPrimitive> primitives, int axis, std::size_t left_size) {
     const auto rank = [axis](const BuildPrimitive& p) {
         const auto& [lo, hi] = p.bounds;
         return std::tuple(lo[axis] + hi[axis], p.id, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]);
@@ -39,6 +39,7 @@ void partition_by_rank(std::span<BuildPrimitive> primitives, int axis, std::size
     std::nth_element(primitives.begin(), primitives.begin() + static_cast<std::ptrdiff_t>(left_size),
                      primitives.end(),
                      [&](const BuildPrimitive& a, const BuildPrimitive& b) { return rank(a) < rank(b); });
+    return {summarise(primitives.first(left_size)), summarise(primitives.subspan(left_size))};
 }
 
 }  // namespace sahl

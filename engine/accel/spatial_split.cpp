@@ -8,7 +8,6 @@
 
 #include "engine/accel/cut_reference.h"
 #include "engine/accel/parallel_chunks.h"
-#include "engine/accel/partition.h"
 
 namespace sahl {
 
@@ -171,8 +170,8 @@ SpatialSplit find_spatial_split(std::span<const BuildPrimitive> references, cons
     return split;
 }
 
-SideSizes apply(const SpatialSplit& split, std::span<BuildPrimitive> references, std::size_t size,
-                const TriangleCorners& corners) {
+Parted apply(const SpatialSplit& split, std::span<BuildPrimitive> references, std::size_t size,
+             const TriangleCorners& corners) {
     const Cutting cutting{split, corners};
     std::atomic<std::size_t> end = size;
     for_chunks(size, [&](std::size_t chunk_begin, std::size_t chunk_end) {
@@ -181,14 +180,13 @@ SideSizes apply(const SpatialSplit& split, std::span<BuildPrimitive> references,
             if (cutting.send(references[i], part)) references[end++] = part;
         }
     });
-    const auto parted = references.first(end);
-    const std::size_t left =
-        partition(parted, [](const BuildPrimitive& p) { return (p.kind & to_right) == 0; });
-    const auto right = parted.subspan(left);
+    const auto all = references.first(end);
+    const Parted parted = partition(all, [](const BuildPrimitive& p) { return (p.kind & to_right) == 0; });
+    const auto right = all.subspan(parted.left.size);
     for_chunks(right.size(), [&](std::size_t chunk_begin, std::size_t chunk_end) {
         for (std::size_t i = chunk_begin; i < chunk_end; ++i) right[i].kind &= ~to_right;
     });
-    return {left, right.size()};
+    return parted;
 }
 
 }  // namespace sahl

@@ -8,6 +8,7 @@
 
 #include "engine/accel/binned_sah.h"
 #include "engine/accel/bvh.h"
+#include "engine/accel/partition.h"
 #include "engine/accel/split_sweep.h"
 
 namespace sahl {
@@ -29,16 +30,10 @@ struct SpatialSplit {
 SpatialSplit find_spatial_split(std::span<const BuildPrimitive> references, const TriangleCorners& corners,
                                 const SetSummary& summary, std::size_t max_side, std::size_t max_together);
 
-/// The sizes of both sides of a set that was parted.
-struct SideSizes {
-    std::size_t left = 0;
-    std::size_t right = 0;
-};
-
 /// Parts the first `size` of `references`, those on the left first, then those on the right. What lies across
 /// becomes two references, one of them in the room behind, where that costs less than to leave it whole on
 /// one side (Stich, sec. 4.4). No side is larger than the split says, but one may be empty.
-SideSizes apply(const SpatialSplit& split, std::span<BuildPrimitive> references, std::size_t size,
-                const TriangleCorners& corners);
+Parted apply(const SpatialSplit& split, std::span<BuildPrimitive> references, std::size_t size,
+             const TriangleCorners& corners);
 
 }  // namespace sahl

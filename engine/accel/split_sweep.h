@@ -45,12 +45,11 @@ inline Grid make_grid(const VectorBox& box, std::size_t bins) {
     Grid grid;
     grid.bins = static_cast<std::int32_t>(bins);
     grid.origin = box.lo;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float extent = box.hi[axis] - box.lo[axis];
-        // Not for extents whose reciprocal overflows.
-        grid.scale[axis] = extent > 1e-30F ? static_cast<float>(bins) / extent : 0.0F;
-        grid.width[axis] = extent / static_cast<float>(bins);
-    }
+    const Float4 extent = box.hi - box.lo;
+    const Float4 count = Float4{} + static_cast<float>(bins);
+    // Not for extents whose reciprocal overflows.
+    grid.scale = extent > 1e-30F ? count / extent : Float4{};
+    grid.width = extent / count;
     return grid;
 }
 
@@ -117,16 +116,13 @@ struct SideLimits {
 };
 
 /// Tries every border between `bins`; keeps the best in `best`. Of equal costs (boxes without area)
-/// the most balanced, then the first.
+/// the most balanced, then the first. A side that is empty costs infinitely many times nothing, which is no
+/// number, and less than nothing else.
 template <class Bin>
 void sweep(std::span<const Bin> bins, const Price& price, int axis, const SideLimits& limits, Border& best) {
     struct Side {
         float cost;
         std::size_t size;
-    };
-    const auto side_of = [&](const VectorBox& box, const auto& tally) {
-        const std::size_t size = tally.size();
-        return size == 0 ? Side{0, 0} : Side{price.of(box, tally), size};
     };
     std::array<Side, most_bins> right_sides;
     VectorBox right_box;
@@ -135,7 +131,7 @@ void sweep(std::span<const Bin> bins, const Price& price, int axis, const SideLi
     for (std::size_t i = bins.size() - 1; i > 0; --i) {
         right_box.extend(bins[i].box);
         right.add(bins[i].exits());
-        right_sides[i] = side_of(right_box, right);
+        right_sides[i] = {price.of(right_box, right), right.size()};
     }
     VectorBox left_box;
     auto left = right;
@@ -143,10 +139,9 @@ void sweep(std::span<const Bin> bins, const Price& price, int axis, const SideLi
     for (std::size_t i = 1; i < bins.size(); ++i) {
         left_box.extend(bins[i - 1].box);
         left.add(bins[i - 1].entries());
-        const Side left_side = side_of(left_box, left);
+        const Side left_side{price.of(left_box, left), left.size()};
         const Side right_side = right_sides[i];
         const std::size_t larger = std::max(left_side.size, right_side.size);
-        if (left_side.size == 0 || right_side.size == 0) continue;
         if (larger > limits.each || left_side.size + right_side.size > limits.together) continue;
         const float cost = left_side.cost + right_side.cost;
         if (cost < best.cost || (cost == best.cost && larger < best.larger_side())) {

@@ -29,6 +29,16 @@ inline Float4 load_hi(const BuildPrimitive& primitive) {
     return hi;
 }
 
+/// Makes two primitives trade places, by vectors: whoever reads one soon after as vectors would have to wait
+/// for stores of single numbers.
+inline void swap(BuildPrimitive& a, BuildPrimitive& b) {
+    Float4 of_a[2], of_b[2];
+    std::memcpy(of_a, &a, sizeof a);
+    std::memcpy(of_b, &b, sizeof b);
+    std::memcpy(&a, of_b, sizeof a);
+    std::memcpy(&b, of_a, sizeof b);
+}
+
 /// A box that starts empty.
 struct VectorBox {
     static constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -16,13 +16,13 @@ using namespace sahl::test;
 namespace {
 
 Bvh build_with(int threads, const std::vector<BuildPrimitive>& primitives,
-               const TriangleCorners& corners = {}) {
+               const TriangleCorners& corners = {}, BuildQuality quality = BuildQuality::high) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(threads));
     // An arena of its own: the default one has no more threads than the machine has processors.
     tbb::task_arena arena(threads);
     Bvh bvh;
-    arena.execute([&] { bvh = build_bvh(primitives, corners); });
+    arena.execute([&] { bvh = build_bvh(primitives, corners, quality); });
     return bvh;
 }
 
@@ -48,15 +48,18 @@ TEST_CASE("the tree is the same bits for every number of threads", "[bvh]") {
 }
 
 TEST_CASE("spatial splits: the tree is the same bits for every number of threads and order", "[bvh]") {
-    for (const Triangles kind : {Triangles::crossed, Triangles::slivers, Triangles::identical}) {
-        CAPTURE(static_cast<int>(kind));
-        const TriangleSet set = make_triangles(kind, 100000, 11);
-        const Bvh one = build_with(1, set.primitives, set.corners());
-        CHECK(same_bits(one, build_with(4, set.primitives, set.corners())));
-        std::vector<BuildPrimitive> shuffled = set.primitives;
-        std::mt19937 random(12);
-        for (std::size_t i = shuffled.size(); i > 1; --i) std::swap(shuffled[i - 1], shuffled[random() % i]);
-        CHECK(same_bits(one, build_with(3, shuffled, set.corners())));
+    for (const BuildQuality quality : {BuildQuality::high, BuildQuality::fast}) {
+        for (const Triangles kind : {Triangles::crossed, Triangles::slivers, Triangles::identical}) {
+            CAPTURE(static_cast<int>(quality), static_cast<int>(kind));
+            const TriangleSet set = make_triangles(kind, 100000, 11);
+            const Bvh one = build_with(1, set.primitives, set.corners(), quality);
+            CHECK(same_bits(one, build_with(4, set.primitives, set.corners(), quality)));
+            std::vector<BuildPrimitive> shuffled = set.primitives;
+            std::mt19937 random(12);
+            for (std::size_t i = shuffled.size(); i > 1; --i)
+                std::swap(shuffled[i - 1], shuffled[random() % i]);
+            CHECK(same_bits(one, build_with(3, shuffled, set.corners(), quality)));
+        }
     }
 }
 

@@ -5,7 +5,6 @@
 
 #include "engine/accel/binary_tree.h"
 #include "engine/accel/bvh.h"
-#include "engine/accel/cost_model.h"
 #include "engine/accel/wide_collapse.h"
 #include "tests/host/accel/boxes.h"
 #include "tests/host/accel/tree_walk.h"
@@ -19,10 +18,10 @@ namespace {
 struct MedianTree {
     BinaryTree tree;
 
-    PlannedNode split(std::size_t begin, std::size_t end, std::uint32_t& node);
+    BinarySubtree split(std::size_t begin, std::size_t end);
 };
 
-PlannedNode MedianTree::split(std::size_t begin, std::size_t end, std::uint32_t& node) {
+BinarySubtree MedianTree::split(std::size_t begin, std::size_t end) {
     const auto first = tree.references.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto last = tree.references.begin() + static_cast<std::ptrdiff_t>(end);
     const bool one_kind = std::all_of(first, last, [&](const auto& p) { return p.kind == first->kind; });
@@ -31,8 +30,8 @@ PlannedNode MedianTree::split(std::size_t begin, std::size_t end, std::uint32_t&
     for (auto p = first; p != last; ++p) extend(bounds, p->bounds);
     const float area = static_cast<float>(half_area(bounds));
     if (end - begin <= most && one_kind) {
-        node = binary_leaf | static_cast<std::uint32_t>(end - begin);
-        return {leaf_costs(area * static_cast<float>(block_costs[first->kind]) / 2), 0};
+        return leaf_subtree({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin)},
+                            first->kind, area);
     }
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
@@ -42,19 +41,15 @@ PlannedNode MedianTree::split(std::size_t begin, std::size_t end, std::uint32_t&
         return a.bounds.lo[axis] + a.bounds.hi[axis] < b.bounds.lo[axis] + b.bounds.hi[axis];
     });
     const std::size_t middle = (begin + end) / 2;
-    node = static_cast<std::uint32_t>(middle);
-    std::uint32_t left = 0, right = 0;
-    const ForestCosts left_costs = split(begin, middle, left).costs;
-    const PlannedNode planned = plan_node(area, left_costs, split(middle, end, right).costs);
-    tree.nodes[middle] = {bounds, left, right, planned.plan, {}};
-    return planned;
+    const BinarySubtree left = split(begin, middle);
+    return tree.join(static_cast<std::uint32_t>(middle), bounds, area, left, split(middle, end));
 }
 
 double median_tree_cost(const std::vector<BuildPrimitive>& primitives) {
     MedianTree median;
     median.tree.references = primitives;
     median.tree.nodes = std::make_unique<BinaryNode[]>(primitives.size());
-    median.split(0, primitives.size(), median.tree.root);
+    median.tree.root = median.split(0, primitives.size()).root;
     Bvh bvh;
     collapse(median.tree, bvh);
     bvh.bounds = empty_bounds();
