@@ -139,7 +139,7 @@ void Builder::move_up(const Range& range, std::size_t by) const {
 // Why depth is bounded. Claim: a set that may still be split `splits_left` times has at most
 // 2^splits_left references. It holds at the root: SAHL_MAX_PRIMITIVES < 2^27 and
 // SAHL_MAX_TREE_DEPTH >= 27. It goes down: no split that is found has a side of more than
-// 2^(splits_left - 1); where none is found, neither side of a balanced cut is larger than
+// 2^(splits_left - 1); where none is, neither side of a balanced cut is larger than
 // (size + 1) / 2 <= 2^(splits_left - 1), and rounding that up to a multiple of 4 = 2^2 cannot pass
 // 2^(splits_left - 1) either, as splits_left >= 3 for the sizes above 4 that are rounded. (A spatial split
 // that leaves a side empty leaves no more than 2^(splits_left - 1) references in all.) At splits_left = 0 a

@@ -42,7 +42,7 @@ struct TriangleCorners {
     const float* of(std::uint32_t id) const { return data + primitives[id].data; }
 };
 
-/// What the time to build a tree is worth.
+/// What the time to build a tree is worth. Fast: triangles are cut beforehand, if at all, see pre_split.h.
 enum class BuildQuality { fast, high };
 
 /// A leaf of the wide tree: one block, or an instance.

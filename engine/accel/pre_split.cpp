@@ -15,9 +15,10 @@ namespace sahl {
 
 namespace {
 
-// A triangle is long if its box is so many times as wide as boxes are on average.
+// A box is as wide as the root of half its area. A triangle is long if its box is so many times as wide as
+// boxes are on average.
 constexpr double long_width = 2;
-// The cuts of a triangle whose box is by as much too large as an average box is large.
+// How many cuts a triangle gets whose box exceeds its need by as much as a box of average width has.
 constexpr double cuts_of_average = 2;
 
 struct LongTriangle {
@@ -35,16 +36,16 @@ struct Splitter {
     const TriangleCorners& corners;
     float scale;  ///< of lengths
 
-    double width_of(const BuildPrimitive& reference) const;
+    float area_of(const BuildPrimitive& reference) const;
     double excess_of(const BuildPrimitive& reference) const;
     std::vector<LongTriangle> find_long() const;
     void cut(std::size_t reference, std::size_t cuts, std::atomic<std::size_t>& end) const;
 };
 
-// The root of half the area of its box.
-double Splitter::width_of(const BuildPrimitive& reference) const {
+// Half the area of its box.
+float Splitter::area_of(const BuildPrimitive& reference) const {
     const Float4 e = (load_hi(reference) - load_lo(reference)) * scale;
-    return std::sqrt(e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
+    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
 }
 
 // By how much half the area of a triangle's box exceeds that of all boxes of its parts, were it cut into very
@@ -57,8 +58,7 @@ double Splitter::excess_of(const BuildPrimitive& reference) const {
     const auto shadow = [&](int i, int k) {
         return std::abs(side(1, i) * side(2, k) - side(1, k) * side(2, i)) / 2;
     };
-    const double width = width_of(reference);
-    return width * width - (shadow(0, 1) + shadow(1, 2) + shadow(2, 0));
+    return static_cast<double>(area_of(reference)) - (shadow(0, 1) + shadow(1, 2) + shadow(2, 0));
 }
 
 // The number of cuts grows with the root of lengths. Measured: where it grows faster, the longest triangles
@@ -66,18 +66,19 @@ double Splitter::excess_of(const BuildPrimitive& reference) const {
 std::vector<LongTriangle> Splitter::find_long() const {
     const std::uint64_t sum = sum_chunks(0, references.size(), [&](std::size_t begin, std::size_t end) {
         std::uint64_t widths = 0;
-        for (std::size_t i = begin; i < end; ++i) widths += fixed_point(width_of(references[i]));
+        for (std::size_t i = begin; i < end; ++i) widths += fixed_point(std::sqrt(area_of(references[i])));
         return widths;
     });
     const double mean = from_fixed_point(sum) / static_cast<double>(references.size());
     std::vector<LongTriangle> all;
     if (mean == 0) return all;
+    const auto long_area = static_cast<float>(long_width * mean * long_width * mean);
     std::mutex mutex;
     for_chunks(references.size(), [&](std::size_t begin, std::size_t end) {
         std::vector<LongTriangle> some;
         for (std::size_t i = begin; i < end; ++i) {
             const BuildPrimitive& reference = references[i];
-            if (reference.kind != SAHL_KIND_TRIANGLE || width_of(reference) < long_width * mean) continue;
+            if (reference.kind != SAHL_KIND_TRIANGLE || area_of(reference) < long_area) continue;
             const double excess = excess_of(reference);
             if (excess > 0) some.push_back({i, cuts_of_average * std::sqrt(std::sqrt(excess) / mean)});
         }
