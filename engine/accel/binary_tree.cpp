@@ -203,7 +203,7 @@ BinarySubtree BinaryTree::join(std::uint32_t index, const Bounds& box, float vis
 
 BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners,
                              BuildQuality quality) {
-    SetSummary summary = summarise(primitives);
+    SetSummary summary = check_and_summarise(primitives);
     BinaryTree tree;
     tree.references = std::move(primitives);
     const bool cut = !corners.empty() && can_be_cut(summary.box.bounds());

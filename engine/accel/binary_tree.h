@@ -76,8 +76,8 @@ struct BinaryTree {
 };
 
 /// Builds the tree over `primitives` (at least one). No path has more than SAHL_MAX_TREE_DEPTH splits.
-/// Bounds must have no negative zeros. References are most_references(primitives) at most; triangles are cut
-/// in space if `corners` are given.
+/// References are most_references(primitives) at most; triangles are cut if `corners` are given. Throws
+/// Error(internal) if a kind is unknown.
 BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners,
                              BuildQuality quality);
 

@@ -7,7 +7,6 @@
 
 #include "engine/accel/binary_tree.h"
 #include "engine/accel/cost_model.h"
-#include "engine/accel/parallel_chunks.h"
 #include "engine/accel/wide_collapse.h"
 #include "engine/core/error.h"
 
@@ -15,26 +14,12 @@ namespace sahl {
 
 namespace {
 
-// Refuses what cannot be built. -0 becomes +0 on the way: as -0 == +0, which of them a minimum keeps would
-// depend on the order.
-void check(std::vector<BuildPrimitive>& primitives) {
+void check_size(const std::vector<BuildPrimitive>& primitives) {
     if (primitives.size() > SAHL_MAX_PRIMITIVES) {
         throw Error(ExitCode::scene, "the scene has " + std::to_string(primitives.size()) +
                                          " primitives; the limit is " + std::to_string(SAHL_MAX_PRIMITIVES) +
                                          ": render fewer");
     }
-    for_chunks(primitives.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            BuildPrimitive& primitive = primitives[i];
-            if (primitive.kind >= kind_count) {
-                throw Error(ExitCode::internal, "primitive " + std::to_string(primitive.id) +
-                                                    " is of unknown kind " + std::to_string(primitive.kind) +
-                                                    "; please report this");
-            }
-            for (float& value : primitive.bounds.lo) value += 0.0f;
-            for (float& value : primitive.bounds.hi) value += 0.0f;
-        }
-    });
 }
 
 Bounds slot_bounds(const device::BvhNode& node, std::size_t slot) {
@@ -77,7 +62,7 @@ BvhStatistics measure(const Bvh& bvh, std::size_t primitives) {
 
 Bvh build_bvh(std::vector<BuildPrimitive> primitives, const TriangleCorners& corners, BuildQuality quality) {
     const auto start = std::chrono::steady_clock::now();
-    check(primitives);
+    check_size(primitives);
     const std::size_t size = primitives.size();
     Bvh bvh;
     if (primitives.empty()) {

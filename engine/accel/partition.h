@@ -59,8 +59,8 @@ Parted partition(std::span<BuildPrimitive> primitives, const Predicate& goes_lef
     });
     Parted whole;
     for (const Parted& part : parted) {
-        whole.left.add(part.left);
-        whole.right.add(part.right);
+        whole.left = whole.left + part.left;
+        whole.right = whole.right + part.right;
     }
 
     std::vector<std::span<BuildPrimitive>> left_behind, right_before;  // `whole.left.size`

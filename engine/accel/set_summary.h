@@ -26,11 +26,8 @@ struct SetSummary {
         ++size;
         kinds |= 1u << (reference.kind & 31u);
     }
-    void add(const SetSummary& other) {
-        box.extend(other.box);
-        centroids.extend(other.centroids);
-        size += other.size;
-        kinds |= other.kinds;
+    SetSummary operator+(const SetSummary& other) const {
+        return {box.with(other.box), centroids.with(other.centroids), size + other.size, kinds | other.kinds};
     }
     /// The least of the kinds that there are.
     std::uint32_t first_kind() const { return static_cast<std::uint32_t>(std::countr_zero(kinds)); }
@@ -39,5 +36,9 @@ struct SetSummary {
 };
 
 SetSummary summarise(std::span<const BuildPrimitive> references);
+
+/// The same of primitives that a tree is to be built over. -0 becomes +0 in their bounds: as -0 == +0, which
+/// of them a minimum keeps would depend on the order. Throws Error(internal) if a kind is unknown.
+SetSummary check_and_summarise(std::span<BuildPrimitive> primitives);
 
 }  // namespace sahl
