@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -37,7 +36,7 @@ Parted partition_serially(std::span<BuildPrimitive> primitives, const Predicate&
         if (first == last) return {left, right};
         left.add(*--last);
         right.add(*first);
-        swap(*first++, *last);
+        trade_places(*first++, *last);
     }
 }
 

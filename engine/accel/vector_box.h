@@ -31,7 +31,7 @@ inline Float4 load_hi(const BuildPrimitive& primitive) {
 
 /// Makes two primitives trade places, by vectors: whoever reads one soon after as vectors would have to wait
 /// for stores of single numbers.
-inline void swap(BuildPrimitive& a, BuildPrimitive& b) {
+inline void trade_places(BuildPrimitive& a, BuildPrimitive& b) {
     Float4 of_a[2], of_b[2];
     std::memcpy(of_a, &a, sizeof a);
     std::memcpy(of_b, &b, sizeof b);
