@@ -1,4 +1,4 @@
-// The kernel for batches whose rays go any way: its program is built, which takes as long as some ten
+// The kernel for batches whose rays go any way: its program is built, which takes as long as some hundred
 // thousand rays do, once an image has enough of them.
 #pragma once
 

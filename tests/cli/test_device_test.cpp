@@ -162,7 +162,8 @@ TEST_CASE(
     for (int i = 0; i < 2000; ++i)
         scene += fmt::format("s {} {} {} 0.12\n", uniform(random), uniform(random), uniform(random) / 3);
     write_file(place.work / "pile.nff", scene);
-    const std::vector<std::string> render{"render", "pile.nff", "-o", "image.png", "--depth", "3"};
+    const std::vector<std::string> render{"render",  "pile.nff", "-o",    "image.png",
+                                          "--depth", "3",        "--spp", "8"};
     CHECK(place.run(render).status == 0);
     fs::remove(place.work / "image.png");
 

@@ -36,6 +36,12 @@ Scene balls_of_mirror() {
     return scene;
 }
 
+RenderSettings many_rays() {
+    RenderSettings settings = square_settings(320, 3);
+    settings.spp = 8;
+    return settings;
+}
+
 /// Generation and kernel of each launch that intersects.
 std::set<std::pair<std::uint32_t, std::string>> intersecting(Device& device, Renderer& renderer,
                                                              const RenderSettings& settings, Image& image) {
@@ -65,7 +71,7 @@ TEST_CASE("choice of traversal: rays that part are traced by streams, once they 
     run_self_test(device);  // or its launches would be among the image's
     const Scene scene = balls_of_mirror();
     Renderer renderer(device, scene);
-    const RenderSettings settings = square_settings(320, 3);
+    const RenderSettings settings = many_rays();
     Image image;
     const auto first = intersecting(device, renderer, settings, image);
     CHECK(first.contains({0, "intersect_packet"}));
@@ -89,7 +95,7 @@ TEST_CASE("choice of traversal: rays that part are traced by streams, once they 
 
 TEST_CASE("choice of traversal: visits are counted the way that rays are traced", "[render]") {
     Renderer renderer(test_device(), balls_of_mirror());
-    const RenderSettings settings = square_settings(320, 3);
+    const RenderSettings settings = many_rays();
     const std::vector<GenerationVisits> before = renderer.count_visits(settings);
     CHECK_FALSE(before[2].intersect.contains("stream"));
     const std::vector<GenerationCounts> counts = render(renderer, settings).statistics.generations;
