@@ -136,21 +136,16 @@ static inline uint mask16_ge(float16 a, float16 b) { return bits16(a >= b); }
 #ifdef SAHL_AVX2
 
 // Byte k of entry m: the place of m's k-th set bit, from the lowest on. AVX2 cannot compress, and what BMI2
-// has instead is slow on some processors.
-#define SAHL_BIT_PLACE(m, bit) \
-    ((((m) >> bit) & 1u) ? (ulong)bit << 8 * __builtin_popcount((m) & ((1u << bit) - 1u)) : 0ul)
-#define SAHL_BIT_PLACES(m)                                                                       \
-    (SAHL_BIT_PLACE(m, 1) | SAHL_BIT_PLACE(m, 2) | SAHL_BIT_PLACE(m, 3) | SAHL_BIT_PLACE(m, 4) | \
-     SAHL_BIT_PLACE(m, 5) | SAHL_BIT_PLACE(m, 6) | SAHL_BIT_PLACE(m, 7))
-#define SAHL_BIT_PLACES4(m) \
-    SAHL_BIT_PLACES(m), SAHL_BIT_PLACES((m) + 1u), SAHL_BIT_PLACES((m) + 2u), SAHL_BIT_PLACES((m) + 3u)
-#define SAHL_BIT_PLACES16(m) \
-    SAHL_BIT_PLACES4(m), SAHL_BIT_PLACES4((m) + 4u), SAHL_BIT_PLACES4((m) + 8u), SAHL_BIT_PLACES4((m) + 12u)
-#define SAHL_BIT_PLACES64(m)                                                          \
-    SAHL_BIT_PLACES16(m), SAHL_BIT_PLACES16((m) + 16u), SAHL_BIT_PLACES16((m) + 32u), \
-        SAHL_BIT_PLACES16((m) + 48u)
-constant ulong bit_places[256] = {SAHL_BIT_PLACES64(0u), SAHL_BIT_PLACES64(64u), SAHL_BIT_PLACES64(128u),
-                                  SAHL_BIT_PLACES64(192u)};
+// has instead is slow on some processors. Of masks by their bits from the highest on, whose places are moved
+// up where a lower one is set.
+#define SAHL_PLACES0(above) above, (above) << 8
+#define SAHL_PLACES1(above) SAHL_PLACES0(above), SAHL_PLACES0((above) << 8 | 1)
+#define SAHL_PLACES2(above) SAHL_PLACES1(above), SAHL_PLACES1((above) << 8 | 2)
+#define SAHL_PLACES3(above) SAHL_PLACES2(above), SAHL_PLACES2((above) << 8 | 3)
+#define SAHL_PLACES4(above) SAHL_PLACES3(above), SAHL_PLACES3((above) << 8 | 4)
+#define SAHL_PLACES5(above) SAHL_PLACES4(above), SAHL_PLACES4((above) << 8 | 5)
+#define SAHL_PLACES6(above) SAHL_PLACES5(above), SAHL_PLACES5((above) << 8 | 6)
+constant ulong bit_places[256] = {SAHL_PLACES6(0ul), SAHL_PLACES6(7ul)};
 
 /// Where the set bits of an 8-bit mask are, from the lowest on; elements behind them are 0.
 static inline int8 set_bits8(uint mask) { return convert_int8(as_uchar8(bit_places[mask])); }
