@@ -58,33 +58,23 @@ static inline void load_list(ShadowRays* list, const global float* rays, const g
     }
 }
 
-kernel void occlusion_packet(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
-                             const global DeviceInstance* instances, const float extent, const global float* rays,
-                             const global uint* ray_ids, const global float* t_max, global uint* out,
-                             const uint capacity, const uint count) {
-    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
-    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
-    if (first < count) {
-        ShadowRays list;
-        load_list(&list, rays, ray_ids, t_max, capacity, first, count);
-        occlude_by_packets(&bvh, &list);
-        for (uint k = 0; k < list.count; ++k) { out[first + k] = list.occlusion[k]; }
+#define OCCLUSION_BY(way, occlude)                                                                              \
+    kernel void occlusion_##way(const global BvhNode* nodes, const global uchar* leaves,                        \
+                                const global float* outlines, const global DeviceInstance* instances,           \
+                                const float extent, const global float* rays, const global uint* ray_ids,       \
+                                const global float* t_max, global uint* out, const uint capacity,               \
+                                const uint count) {                                                             \
+        const Bvh bvh = {nodes, leaves, outlines, instances, extent};                                           \
+        const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;                                           \
+        if (first < count) {                                                                                    \
+            ShadowRays list;                                                                                    \
+            load_list(&list, rays, ray_ids, t_max, capacity, first, count);                                     \
+            occlude(&bvh, &list);                                                                               \
+            for (uint k = 0; k < list.count; ++k) { out[first + k] = list.occlusion[k]; }                       \
+        }                                                                                                       \
     }
-}
-
-kernel void occlusion_stream(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
-                             const global DeviceInstance* instances, const float extent, const global float* rays,
-                             const global uint* ray_ids, const global float* t_max, global uint* out,
-                             const uint capacity, const uint count) {
-    const Bvh bvh = {nodes, leaves, outlines, instances, extent};
-    const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
-    if (first < count) {
-        ShadowRays list;
-        load_list(&list, rays, ray_ids, t_max, capacity, first, count);
-        occlude_by_stream(&bvh, &list);
-        for (uint k = 0; k < list.count; ++k) { out[first + k] = list.occlusion[k]; }
-    }
-}
+OCCLUSION_BY(packet, occlude_by_packets)
+OCCLUSION_BY(stream, occlude_by_stream)
 
 kernel void walk(const global BvhNode* nodes, const global uchar* leaves, const global float* outlines,
                  const global DeviceInstance* instances, const float extent, const global float* rays, const global uint* ray_ids, const float t_max,
