@@ -6,7 +6,6 @@
 #include <bit>
 #include <csetjmp>
 #include <new>
-#include <string_view>
 
 namespace sahl {
 namespace {
