@@ -45,7 +45,7 @@ RaySet select_rays(const RaySet& rays, std::span<const std::size_t> places) {
 }
 
 RaySet primary_rays(const Camera& camera, int size) {
-    constexpr int strip_height = 8;
+    constexpr int strip_height = 8, block_columns = 4;
     const glm::dvec3 forward = glm::normalize(camera.look_at - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
     const glm::dvec3 down = glm::cross(forward, right);
@@ -53,9 +53,11 @@ RaySet primary_rays(const Camera& camera, int size) {
     const auto across = [&](int pixel) { return reach * (2 * (pixel + 0.5) / size - 1); };
     RaySet rays = make_rays("primary", static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
     for (int top = 0; top < size; top += strip_height) {
-        for (int x = 0; x < size; ++x) {
-            for (int y = top; y < top + strip_height; ++y)
-                add_ray(rays, camera.eye, glm::normalize(forward + across(x) * right + across(y) * down));
+        for (int left = 0; left < size; left += block_columns) {
+            for (int y = top; y < top + strip_height; ++y) {
+                for (int x = left; x < left + block_columns; ++x)
+                    add_ray(rays, camera.eye, glm::normalize(forward + across(x) * right + across(y) * down));
+            }
         }
     }
     return rays;

@@ -6,9 +6,10 @@
 #include "kernels/lanes.h"
 #include "kernels/sampling.h"
 
-// Pixels are numbered in strips of this many rows, column by column, so that neighbours in a batch
-// are neighbours in the image.
+// Pixels are numbered in strips of this many rows, in blocks of so many columns, row by row, so that
+// neighbours in a batch are neighbours in the image: eight make 4 x 2 pixels, sixteen 4 x 4.
 #define SAHL_STRIP_HEIGHT 8u
+#define SAHL_BLOCK_COLUMNS 4u
 
 /// Column and row in the crop of its pixel number `index`.
 static inline uint2 crop_pixel(uint index, uint width, uint height) {
@@ -16,7 +17,10 @@ static inline uint2 crop_pixel(uint index, uint width, uint height) {
     uint rest = index - strip * SAHL_STRIP_HEIGHT * width;
     uint top = strip * SAHL_STRIP_HEIGHT;
     uint rows = SAHL_MIN(SAHL_STRIP_HEIGHT, height - top);
-    return (uint2)(rest / rows, top + rest % rows);
+    uint left = rest / (rows * SAHL_BLOCK_COLUMNS) * SAHL_BLOCK_COLUMNS;
+    uint columns = SAHL_MIN(SAHL_BLOCK_COLUMNS, width - left);
+    rest -= left * rows;
+    return (uint2)(left + rest % columns, top + rest / columns);
 }
 
 static inline real3 camera_vector(const float* value, const float* lacking) {

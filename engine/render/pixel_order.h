@@ -5,7 +5,7 @@
 
 namespace sahl {
 
-/// Pixels are finished in strips of so many rows, column by column: SAHL_STRIP_HEIGHT of kernels/camera.h.
+/// Pixels are finished in strips of so many rows: SAHL_STRIP_HEIGHT of kernels/camera.h.
 inline constexpr int strip_rows = 8;
 
 /// How many rows of an image (or a crop) of `width` and `height`, from the top, are finished once `pixels`

@@ -20,12 +20,15 @@ using glm::dvec3;
 constexpr double allowed_of_rays = 1e-6;
 constexpr double allowed_of_hits = 2e-5;
 
-/// The pixels of a crop in the order of waves: strips of eight rows, each column by column.
+/// The pixels of a crop in the order of waves: strips of eight rows in blocks of four columns, row by row.
 std::vector<std::uint32_t> wave_order(std::uint32_t width, std::uint32_t height) {
     std::vector<std::uint32_t> order;
     for (std::uint32_t top = 0; top < height; top += 8) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            for (std::uint32_t y = top; y < std::min(top + 8, height); ++y) order.push_back(y * width + x);
+        for (std::uint32_t left = 0; left < width; left += 4) {
+            for (std::uint32_t y = top; y < std::min(top + 8, height); ++y) {
+                for (std::uint32_t x = left; x < std::min(left + 4, width); ++x)
+                    order.push_back(y * width + x);
+            }
         }
     }
     return order;

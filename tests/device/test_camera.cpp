@@ -53,6 +53,22 @@ TEST_CASE("the order of pixels visits each pixel of a crop once, in strips of ei
     }
 }
 
+TEST_CASE("sixteen pixels that follow each other are a square of the image, eight of them a half of it") {
+    KernelRunner runner(kKernels);
+    constexpr std::uint32_t width = 20, height = 16;
+    Buffer out(runner.device(), width * height * sizeof(Pixel), "pixels");
+    runner.run("pixels", width * height, width, height, out);
+    const std::vector<Pixel> order = KernelRunner::download<Pixel>(out, width * height);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        CAPTURE(i);
+        const Pixel square = order[i / 16 * 16];
+        REQUIRE(square[0] % 4 == 0);
+        REQUIRE(square[1] % 4 == 0);
+        CHECK(order[i][0] / 4 == square[0] / 4);
+        CHECK(order[i][1] - square[1] == i % 16 / 4);
+    }
+}
+
 TEST_CASE("camera rays go where the oracle's go") {
     KernelRunner runner(kKernels);
     const std::vector<Camera> cameras{{},

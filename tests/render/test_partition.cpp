@@ -149,7 +149,8 @@ TEST_CASE("render: rows are final once progress says that their pixels are", "[r
         const auto sums = film.sums().subspan(first_seen.size(), final_sums - first_seen.size());
         first_seen.insert(first_seen.end(), sums.begin(), sums.end());
     });
-    CHECK(bands == 6);  // strips of 8 rows, the last one of 3
+    // Of six strips of 8 rows the last, of 3, may be finished by the wave that finishes the one before.
+    CHECK((bands == 5 || bands == 6));
     CHECK(std::equal(first_seen.begin(), first_seen.end(), film.sums().begin(), film.sums().end()));
 }
 
