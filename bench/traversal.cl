@@ -53,12 +53,12 @@ kernel void occluded_packet(const global BvhNode* nodes, const global uchar* lea
         Packet packet;
         load_packet(&packet, rays, ray_ids, capacity, first, count);
         for (uint k = 0; k < rays_here; ++k) {
-            ((float*)&packet.hits[k / 16u].t)[k % 16u] = t_max[first + k];
+            ((float*)&packet.hits[k / SAHL_GROUP_RAYS].t)[k % SAHL_GROUP_RAYS] = t_max[first + k];
         }
         trace_packet(&bvh, &packet, true);
         for (uint k = 0; k < rays_here; ++k) {
-            occlusion[first + k] =
-                strongest_occlusion(((const uint*)&packet.hits[k / 16u].occlusion)[k % 16u]);
+            occlusion[first + k] = strongest_occlusion(
+                ((const uint*)&packet.hits[k / SAHL_GROUP_RAYS].occlusion)[k % SAHL_GROUP_RAYS]);
         }
     }
 }

@@ -1,5 +1,5 @@
-// Where lines cross shapes: crossings_of_width.h for four shapes and one ray, and for one shape and
-// sixteen rays.
+// Where lines cross shapes: crossings_of_width.h for four shapes and one ray, and for one shape and a group
+// of rays.
 #ifndef SAHL_CROSSINGS_H
 #define SAHL_CROSSINGS_H
 
@@ -7,8 +7,11 @@
 #include "kernels/crossings_of_width.h"
 #undef SAHL_WIDTH
 
-#define SAHL_WIDTH 16
+#define SAHL_WIDTH SAHL_GROUP_RAYS
 #include "kernels/crossings_of_width.h"
 #undef SAHL_WIDTH
+
+#define ObjectRaysg SAHL_OF_WIDTH(ObjectRays, SAHL_GROUP_RAYS)
+#define Chordsg SAHL_OF_WIDTH(Chords, SAHL_GROUP_RAYS)
 
 #endif

@@ -1,6 +1,6 @@
 // Where lines cross shapes: spheres, and in their object spaces (QuadricBlock) ellipsoids, cones and
 // cylinders, open or solid, discs and boxes. All of it for vectors of SAHL_WIDTH floats whose lanes know
-// nothing of each other: four shapes and one ray, or one shape and sixteen rays, give the same bits.
+// nothing of each other: four shapes and one ray, or one shape and a group of rays, give the same bits.
 // crossings.h includes this file once for each width; it has no include guard.
 //
 // The ray is first moved to the point nearest the shape (Haines, Günther, Akenine-Möller 2019,

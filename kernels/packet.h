@@ -1,4 +1,4 @@
-// Packets of 128 rays in groups of sixteen: loading and storing them, and their passes: the rays of one
+// Packets of 128 rays in groups (simd.h): loading and storing them, and their passes: the rays of one
 // octant and shear axis (triangle.h), for which near and far planes and the order of children are the same.
 // What is done once a packet or pass is not inlined: compilers are done sooner, and loops keep registers.
 #ifndef SAHL_PACKET_H
@@ -10,7 +10,7 @@
 #include "kernels/shadow_rays.h"
 #include "kernels/triangle_group.h"
 
-#define SAHL_PACKET_GROUPS 8u
+#define SAHL_PACKET_GROUPS (SAHL_PACKET_RAYS / SAHL_GROUP_RAYS)
 
 /// The rays of a packet, in the world and in the instance that is being walked through.
 typedef struct {
@@ -23,49 +23,51 @@ typedef struct {
     PassAxes axes;
     float inverse_lo[3], inverse_hi[3];   // intervals over the rays
     float near_origin[3], far_origin[3];  // the origins that make near planes nearest, far ones farthest
-    float margin[3];                      // by which boxes grow for the tests of sixteen rays
+    float margin[3];                      // by which boxes grow for the tests of groups
     float farthest;                       // of the groups' ranges
 } Pass;
 
 /// The pass that each ray of a group belongs to: octant + 8 · shear axis.
-static inline int16 pass_of(const RayGroup* rays) {
-    float16 x = fabs(rays->direction[0]), y = fabs(rays->direction[1]), z = fabs(rays->direction[2]);
-    Lanes16 along_x = less_equal16(y, x) & less_equal16(z, x);
-    Lanes16 along_y = less_equal16(z, y);
-    int16 axis = select16(along_x, (int16)(0), select16(along_y, (int16)(8), (int16)(16)));
-    return axis | (as_int16(rays->inverse[0]) >> 31 & (int16)(1)) |
-           (as_int16(rays->inverse[1]) >> 31 & (int16)(2)) | (as_int16(rays->inverse[2]) >> 31 & (int16)(4));
+static inline intg pass_of(const RayGroup* rays) {
+    floatg x = fabs(rays->direction[0]), y = fabs(rays->direction[1]), z = fabs(rays->direction[2]);
+    LaneMask along_x = less_equalg(y, x) & less_equalg(z, x);
+    LaneMask along_y = less_equalg(z, y);
+    intg axis = selectg(along_x, (intg)(0), selectg(along_y, (intg)(8), (intg)(16)));
+    return axis | (as_intg(rays->inverse[0]) >> 31 & (intg)(1)) |
+           (as_intg(rays->inverse[1]) >> 31 & (intg)(2)) | (as_intg(rays->inverse[2]) >> 31 & (intg)(4));
 }
 
 /// One bit for each pass that the groups' rays need.
-SAHL_NOINLINE uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, int16* pass_numbers) {
-    int16 passes = 0;
+SAHL_NOINLINE uint passes_of(const RayGroup* rays, const GroupHits* hits, uint groups, intg* pass_numbers) {
+    intg passes = 0;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         pass_numbers[g] = -1;
         if (groups >> g & 1u) {
-            Lanes16 alive = are_traceable(rays + g) & less16((float16)(-INFINITY), hits[g].t);
-            pass_numbers[g] = select16(alive, pass_of(rays + g), (int16)(-1));
-            passes |= select16(alive, (int16)(1) << pass_of(rays + g), (int16)(0));
+            LaneMask alive = are_traceable(rays + g) & lessg((floatg)(-INFINITY), hits[g].t);
+            pass_numbers[g] = selectg(alive, pass_of(rays + g), (intg)(-1));
+            passes |= selectg(alive, (intg)(1) << pass_of(rays + g), (intg)(0));
         }
     }
-    int8 half_of_it = passes.lo | passes.hi;
-    int4 quarter = half_of_it.lo | half_of_it.hi;
-    return (uint)(quarter.x | quarter.y | quarter.z | quarter.w);
+    uint of_all = 0;
+    for (uint lane = 0; lane < SAHL_GROUP_RAYS; ++lane) {
+        of_all |= ((const uint*)&passes)[lane];
+    }
+    return of_all;
 }
 
 /// Sets up the rays of pass `number`: `far` where their ranges end (-inf for others), `group_far` the
 /// farthest of each group. Returns the groups that have any.
 SAHL_NOINLINE uint begin_pass(Pass* pass, uint number, uint instance, float extent, RayGroup* rays,
-                              const GroupHits* hits, uint groups, const int16* pass_numbers, float16* far,
-                              float16* cull_far, float* group_far) {
-    const float16 infinite = INFINITY;
+                              const GroupHits* hits, uint groups, const intg* pass_numbers, floatg* far,
+                              floatg* cull_far, float* group_far) {
+    const floatg infinite = INFINITY;
     PassAxes* axes = &pass->axes;
     axes->octant = number & 7u;
     axes->kz = number >> 3;
     axes->kx = axes->kz == 2u ? 0u : axes->kz + 1u;
     axes->ky = axes->kx == 2u ? 0u : axes->kx + 1u;
     axes->instance = instance;
-    float16 inverse_lo[3], inverse_hi[3], origin_lo[3], origin_hi[3];
+    floatg inverse_lo[3], inverse_hi[3], origin_lo[3], origin_hi[3];
     for (uint k = 0; k < 3u; ++k) {
         inverse_lo[k] = infinite;
         inverse_hi[k] = -infinite;
@@ -82,34 +84,34 @@ SAHL_NOINLINE uint begin_pass(Pass* pass, uint number, uint instance, float exte
             continue;
         }
         RayGroup* group = rays + g;
-        Lanes16 active = equal16(pass_numbers[g], (int16)((int)number));
-        if (!any16(active)) {
+        LaneMask active = equalg(pass_numbers[g], (intg)((int)number));
+        if (!anyg(active)) {
             continue;
         }
         present |= 1u << g;
-        far[g] = select16(active, hits[g].t, -infinite);
+        far[g] = selectg(active, hits[g].t, -infinite);
         cull_far[g] = far[g] * SAHL_CULL_SLACK;
-        group_far[g] = greatest16(cull_far[g]);
+        group_far[g] = greatestg(cull_far[g]);
         pass->farthest = SAHL_MAX(pass->farthest, group_far[g]);
         for (uint k = 0; k < 3u; ++k) {
-            float16 low = select16(active, group->inverse[k], infinite);
-            float16 high = select16(active, group->inverse[k], -infinite);
+            floatg low = selectg(active, group->inverse[k], infinite);
+            floatg high = selectg(active, group->inverse[k], -infinite);
             inverse_lo[k] = SAHL_MIN(inverse_lo[k], low);
             inverse_hi[k] = SAHL_MAX(inverse_hi[k], high);
-            low = select16(active, group->origin[k], infinite);
-            high = select16(active, group->origin[k], -infinite);
+            low = selectg(active, group->origin[k], infinite);
+            high = selectg(active, group->origin[k], -infinite);
             origin_lo[k] = SAHL_MIN(origin_lo[k], low);
             origin_hi[k] = SAHL_MAX(origin_hi[k], high);
         }
-        float16 dz = group->direction[axes->kz];
+        floatg dz = group->direction[axes->kz];
         group->shear_x = -(group->direction[axes->kx] / dz);
         group->shear_y = -(group->direction[axes->ky] / dz);
     }
     axes->common_origin = true;
     for (uint k = 0; k < 3u; ++k) {
-        pass->inverse_lo[k] = least16(inverse_lo[k]);
-        pass->inverse_hi[k] = greatest16(inverse_hi[k]);
-        float lo = least16(origin_lo[k]), hi = greatest16(origin_hi[k]);
+        pass->inverse_lo[k] = leastg(inverse_lo[k]);
+        pass->inverse_hi[k] = greatestg(inverse_hi[k]);
+        float lo = leastg(origin_lo[k]), hi = greatestg(origin_hi[k]);
         // Outward by what covers the rounding here and of the primitives' tests (see bvh.h). A box that has
         // grown by twice that is entered before, and left behind, where RayBoxTest has it.
         const float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
@@ -126,20 +128,20 @@ SAHL_NOINLINE uint begin_pass(Pass* pass, uint number, uint instance, float exte
 /// A group without rays: none of its lanes is traced.
 static inline void clear_group(RayGroup* rays, GroupHits* hits) {
     for (uint k = 0; k < 3u; ++k) {
-        rays->origin[k] = (float16)(0.0f);
-        rays->direction[k] = (float16)(0.0f);
+        rays->origin[k] = (floatg)(0.0f);
+        rays->direction[k] = (floatg)(0.0f);
     }
-    hits->t = (float16)(-INFINITY);
-    hits->start_primitive = (int16)((int)SAHL_NO_PRIMITIVE);
-    hits->start_instance = (int16)((int)SAHL_WORLD);
+    hits->t = (floatg)(-INFINITY);
+    hits->start_primitive = (intg)((int)SAHL_NO_PRIMITIVE);
+    hits->start_instance = (intg)((int)SAHL_WORLD);
 }
 
 static inline void clear_hits(GroupHits* hits) {
-    hits->u = (float16)(0.0f);
-    hits->v = (float16)(0.0f);
-    hits->primitive = (int16)(-1);
-    hits->instance = (int16)(-1);
-    hits->occlusion = (int16)((int)SAHL_HIT_NOTHING);
+    hits->u = (floatg)(0.0f);
+    hits->v = (floatg)(0.0f);
+    hits->primitive = (intg)(-1);
+    hits->instance = (intg)(-1);
+    hits->occlusion = (intg)((int)SAHL_HIT_NOTHING);
 }
 
 /// Rays first.. of a batch, up to `end`.
@@ -147,18 +149,18 @@ SAHL_NOINLINE void load_packet(Packet* packet, const global float* rays, const g
                                uint capacity, uint first, uint end) {
     const global uint* starts = ray_ids + (size_t)SAHL_RAY_EXCLUDE * capacity;
     const global uint* instances = ray_ids + (size_t)SAHL_RAY_INSTANCE * capacity;
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += 16u) {
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += SAHL_GROUP_RAYS) {
         RayGroup* group = packet->rays[0] + g;
         GroupHits* hits = packet->hits + g;
         clear_hits(hits);
-        if (first + 16u <= end) {
+        if (first + SAHL_GROUP_RAYS <= end) {
             for (uint k = 0; k < 3u; ++k) {
-                group->origin[k] = vload16(0, rays + (size_t)(SAHL_RAY_ORIGIN + k) * capacity + first);
-                group->direction[k] = vload16(0, rays + (size_t)(SAHL_RAY_DIRECTION + k) * capacity + first);
+                group->origin[k] = vloadg(0, rays + (size_t)(SAHL_RAY_ORIGIN + k) * capacity + first);
+                group->direction[k] = vloadg(0, rays + (size_t)(SAHL_RAY_DIRECTION + k) * capacity + first);
             }
-            hits->t = (float16)(INFINITY);
-            hits->start_primitive = as_int16(vload16(0, starts + first) & SAHL_ID_MASK);
-            hits->start_instance = as_int16(vload16(0, instances + first));
+            hits->t = (floatg)(INFINITY);
+            hits->start_primitive = as_intg(vloadg(0, starts + first) & SAHL_ID_MASK);
+            hits->start_instance = as_intg(vloadg(0, instances + first));
             continue;
         }
         clear_group(group, hits);
@@ -171,18 +173,18 @@ SAHL_NOINLINE void load_packet(Packet* packet, const global float* rays, const g
 
 /// Rays first.. of a list.
 SAHL_NOINLINE void load_shadow_packet(Packet* packet, const ShadowRays* list, uint first) {
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += 16u) {
+    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g, first += SAHL_GROUP_RAYS) {
         RayGroup* group = packet->rays[0] + g;
         GroupHits* hits = packet->hits + g;
         clear_hits(hits);
-        if (first + 16u <= list->count) {
+        if (first + SAHL_GROUP_RAYS <= list->count) {
             for (uint k = 0; k < 3u; ++k) {
-                group->origin[k] = vload16(0, list->origin[k] + first);
-                group->direction[k] = vload16(0, list->direction[k] + first);
+                group->origin[k] = vloadg(0, list->origin[k] + first);
+                group->direction[k] = vloadg(0, list->direction[k] + first);
             }
-            hits->t = vload16(0, list->t_max + first);
-            hits->start_primitive = as_int16(vload16(0, list->start_primitive + first));
-            hits->start_instance = as_int16(vload16(0, list->start_instance + first));
+            hits->t = vloadg(0, list->t_max + first);
+            hits->start_primitive = as_intg(vloadg(0, list->start_primitive + first));
+            hits->start_instance = as_intg(vloadg(0, list->start_instance + first));
             continue;
         }
         clear_group(group, hits);
@@ -196,19 +198,19 @@ SAHL_NOINLINE void load_shadow_packet(Packet* packet, const ShadowRays* list, ui
 /// Hits of the rays first.. of a batch, up to `end`.
 SAHL_NOINLINE void store_packet(const Packet* packet, global float* hits, global uint* hit_ids, uint capacity,
                                 uint first, uint end) {
-    for (uint g = 0; g < SAHL_PACKET_GROUPS && first < end; ++g, first += 16u) {
+    for (uint g = 0; g < SAHL_PACKET_GROUPS && first < end; ++g, first += SAHL_GROUP_RAYS) {
         const GroupHits* group = packet->hits + g;
-        const Lanes16 none = less16(group->primitive, (int16)(0));
-        const int16 primitive = select16(none, (int16)((int)SAHL_NO_PRIMITIVE), group->primitive);
-        const int16 instance = select16(none, (int16)((int)SAHL_WORLD), group->instance);
+        const LaneMask none = lessg(group->primitive, (intg)(0));
+        const intg primitive = selectg(none, (intg)((int)SAHL_NO_PRIMITIVE), group->primitive);
+        const intg instance = selectg(none, (intg)((int)SAHL_WORLD), group->instance);
         global uint* primitives = hit_ids + (size_t)SAHL_HIT_PRIMITIVE * capacity + first;
         global uint* instances = hit_ids + (size_t)SAHL_HIT_INSTANCE * capacity + first;
-        if (first + 16u <= end) {
-            vstore16(group->t, 0, hits + (size_t)SAHL_HIT_T * capacity + first);
-            vstore16(group->u, 0, hits + (size_t)SAHL_HIT_U * capacity + first);
-            vstore16(group->v, 0, hits + (size_t)SAHL_HIT_V * capacity + first);
-            vstore16(as_uint16(primitive), 0, primitives);
-            vstore16(as_uint16(instance), 0, instances);
+        if (first + SAHL_GROUP_RAYS <= end) {
+            vstoreg(group->t, 0, hits + (size_t)SAHL_HIT_T * capacity + first);
+            vstoreg(group->u, 0, hits + (size_t)SAHL_HIT_U * capacity + first);
+            vstoreg(group->v, 0, hits + (size_t)SAHL_HIT_V * capacity + first);
+            vstoreg(as_uintg(primitive), 0, primitives);
+            vstoreg(as_uintg(instance), 0, instances);
             continue;
         }
         for (uint lane = 0; first + lane < end; ++lane) {
@@ -221,10 +223,10 @@ SAHL_NOINLINE void store_packet(const Packet* packet, global float* hits, global
 }
 
 static inline void store_occlusion(const Packet* packet, ShadowRays* list, uint first) {
-    for (uint g = 0; g < SAHL_PACKET_GROUPS && first < list->count; ++g, first += 16u) {
-        const int16 occlusion = packet->hits[g].occlusion, opaque = occlusion & (int16)((int)SAHL_HIT_OPAQUE);
-        const int16 strongest = select16(equal16(opaque, (int16)(0)), occlusion, opaque);
-        vstore16(as_uint16(strongest), 0, list->occlusion + first);
+    for (uint g = 0; g < SAHL_PACKET_GROUPS && first < list->count; ++g, first += SAHL_GROUP_RAYS) {
+        const intg occlusion = packet->hits[g].occlusion, opaque = occlusion & (intg)((int)SAHL_HIT_OPAQUE);
+        const intg strongest = selectg(equalg(opaque, (intg)(0)), occlusion, opaque);
+        vstoreg(as_uintg(strongest), 0, list->occlusion + first);
     }
 }
 

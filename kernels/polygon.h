@@ -23,7 +23,9 @@
         *inside ^= ((ay > 0.0f) != (by > 0.0f)) & ((edge > 0.0f) == (by > ay));                   \
     }
 SAHL_DEFINE_CROSS_EDGE(float8, int8)
-SAHL_DEFINE_CROSS_EDGE(float16, int16)
+#if SAHL_GROUP_RAYS != 8
+SAHL_DEFINE_CROSS_EDGE(floatg, intg)
+#endif
 
 static inline const global OutlineGroup* outline_of(const global PolygonBlock* block,
                                                     const global float* outlines) {

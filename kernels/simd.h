@@ -2,9 +2,11 @@
 // of names. SAHL_PLAIN_OPENCL forces the plain version, which other CPUs and GPUs use;
 // SAHL_NO_AVX512 that of AVX2 where it is to be had.
 //
-// Two kinds of masks: bits of a uint (bit k is lane k) where lanes are looked at one by one, and
-// Lanes16 where sixteen rays go together: bits on AVX-512, whole lanes elsewhere. Comparisons with
-// NaN are false.
+// Rays that go together do so in groups of SAHL_GROUP_RAYS, as wide as registers are: floatg, intg and uintg
+// hold a number of each ray. What is wider takes two registers each time, of which AVX2 has sixteen.
+//
+// Two kinds of masks: bits of a uint (bit k is lane k) where lanes are looked at one by one, and LaneMask for
+// groups of rays: bits on AVX-512, whole lanes elsewhere. Comparisons with NaN are false.
 #ifndef SAHL_SIMD_H
 #define SAHL_SIMD_H
 
@@ -60,78 +62,105 @@ static inline uint sign_bits8(int8 lanes) {
 #endif
 }
 
+static inline float least8(float8 v) {
+    float4 b = SAHL_MIN(v.lo, v.hi);
+    float2 c = SAHL_MIN(b.lo, b.hi);
+    return SAHL_MIN(c.x, c.y);
+}
+
+static inline float greatest8(float8 v) {
+    float4 b = SAHL_MAX(v.lo, v.hi);
+    float2 c = SAHL_MAX(b.lo, b.hi);
+    return SAHL_MAX(c.x, c.y);
+}
+
 #ifdef SAHL_AVX512
 
+#define SAHL_GROUP_RAYS 16
+typedef float16 floatg;
+typedef int16 intg;
+typedef uint16 uintg;
+#define as_floatg as_float16
+#define as_intg as_int16
+#define as_uintg as_uint16
+#define vloadg vload16
+#define vstoreg vstore16
+
 // The immediates are predicates of vcmpps, ordered where that is a choice.
-#define SAHL_COMPARE16(a, b, predicate) \
-    ((Lanes16)__builtin_ia32_cmpps512_mask(a, b, predicate, (ushort)0xffff, 4))
-typedef ushort Lanes16;
-SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 0); }
-SAHL_OVERLOAD Lanes16 less16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 1); }
-SAHL_OVERLOAD Lanes16 less_equal16(float16 a, float16 b) { return SAHL_COMPARE16(a, b, 2); }
-SAHL_OVERLOAD Lanes16 equal16(int16 a, int16 b) {
-    return (Lanes16)__builtin_ia32_cmpd512_mask(a, b, 0, (ushort)0xffff);
+#define SAHL_COMPARE(a, b, predicate) \
+    ((LaneMask)__builtin_ia32_cmpps512_mask(a, b, predicate, (ushort)0xffff, 4))
+typedef ushort LaneMask;
+SAHL_OVERLOAD LaneMask equalg(floatg a, floatg b) { return SAHL_COMPARE(a, b, 0); }
+SAHL_OVERLOAD LaneMask lessg(floatg a, floatg b) { return SAHL_COMPARE(a, b, 1); }
+SAHL_OVERLOAD LaneMask less_equalg(floatg a, floatg b) { return SAHL_COMPARE(a, b, 2); }
+SAHL_OVERLOAD LaneMask equalg(intg a, intg b) {
+    return (LaneMask)__builtin_ia32_cmpd512_mask(a, b, 0, (ushort)0xffff);
 }
-SAHL_OVERLOAD Lanes16 less16(int16 a, int16 b) {
-    return (Lanes16)__builtin_ia32_cmpd512_mask(a, b, 1, (ushort)0xffff);
+SAHL_OVERLOAD LaneMask lessg(intg a, intg b) {
+    return (LaneMask)__builtin_ia32_cmpd512_mask(a, b, 1, (ushort)0xffff);
 }
-SAHL_OVERLOAD float16 select16(Lanes16 lanes, float16 a, float16 b) {
+SAHL_OVERLOAD floatg selectg(LaneMask lanes, floatg a, floatg b) {
     return __builtin_ia32_selectps_512(lanes, a, b);
 }
-SAHL_OVERLOAD int16 select16(Lanes16 lanes, int16 a, int16 b) {
-    return __builtin_ia32_selectd_512(lanes, a, b);
-}
-static inline bool any16(Lanes16 lanes) { return lanes != 0; }
-static inline uint bits16(Lanes16 lanes) { return lanes; }
-static inline Lanes16 lanes16(uint bits) { return (Lanes16)bits; }
-static inline Lanes16 not16(Lanes16 lanes) { return (Lanes16)~lanes; }
+SAHL_OVERLOAD intg selectg(LaneMask lanes, intg a, intg b) { return __builtin_ia32_selectd_512(lanes, a, b); }
+static inline bool anyg(LaneMask lanes) { return lanes != 0; }
+static inline LaneMask notg(LaneMask lanes) { return (LaneMask)~lanes; }
+static inline float leastg(floatg v) { return least8(SAHL_MIN(v.lo, v.hi)); }
+static inline float greatestg(floatg v) { return greatest8(SAHL_MAX(v.lo, v.hi)); }
 
 static inline uint mask8_le(float8 a, float8 b) { return __builtin_ia32_cmpps256_mask(a, b, 2, (uchar)0xff); }
-static inline uint mask16_le(float16 a, float16 b) { return less_equal16(a, b); }
-static inline uint mask16_ge(float16 a, float16 b) { return less_equal16(b, a); }
+static inline uint mask16_le(float16 a, float16 b) { return less_equalg(a, b); }
 
 #else
 
-typedef int16 Lanes16;
+#define SAHL_GROUP_RAYS 8
+typedef float8 floatg;
+typedef int8 intg;
+typedef uint8 uintg;
+#define as_floatg as_float8
+#define as_intg as_int8
+#define as_uintg as_uint8
+#define vloadg vload8
+#define vstoreg vstore8
+
+typedef int8 LaneMask;
 #ifdef SAHL_AVX2
 // In assembly, for LLVM 15 knows too much of comparisons: it packs the masks of those that are combined into
 // bytes and unpacks what results, which takes longer than the comparisons.
-#define SAHL_DEFINE_COMPARISON(NAME, LANES, INSTRUCTION)       \
-    SAHL_OVERLOAD int8 NAME(LANES##8 a, LANES##8 b) {          \
-        int8 mask;                                             \
-        __asm__(INSTRUCTION : "=x"(mask) : "x"(a), "x"(b));    \
-        return mask;                                           \
-    }                                                          \
-    SAHL_OVERLOAD Lanes16 NAME##16(LANES##16 a, LANES##16 b) { \
-        return (Lanes16)(NAME(a.lo, b.lo), NAME(a.hi, b.hi));  \
+#define SAHL_DEFINE_COMPARISON(NAME, GROUP, INSTRUCTION)    \
+    SAHL_OVERLOAD LaneMask NAME(GROUP a, GROUP b) {         \
+        LaneMask mask;                                      \
+        __asm__(INSTRUCTION : "=x"(mask) : "x"(a), "x"(b)); \
+        return mask;                                        \
     }
-SAHL_DEFINE_COMPARISON(equal, float, "vcmpeqps %2, %1, %0")
-SAHL_DEFINE_COMPARISON(less, float, "vcmpltps %2, %1, %0")
-SAHL_DEFINE_COMPARISON(less_equal, float, "vcmpleps %2, %1, %0")
-SAHL_DEFINE_COMPARISON(equal, int, "vpcmpeqd %2, %1, %0")
-SAHL_DEFINE_COMPARISON(less, int, "vpcmpgtd %1, %2, %0")
+SAHL_DEFINE_COMPARISON(equalg, floatg, "vcmpeqps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(lessg, floatg, "vcmpltps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(less_equalg, floatg, "vcmpleps %2, %1, %0")
+SAHL_DEFINE_COMPARISON(equalg, intg, "vpcmpeqd %2, %1, %0")
+SAHL_DEFINE_COMPARISON(lessg, intg, "vpcmpgtd %1, %2, %0")
 #else
-SAHL_OVERLOAD Lanes16 equal16(float16 a, float16 b) { return a == b; }
-SAHL_OVERLOAD Lanes16 less16(float16 a, float16 b) { return a < b; }
-SAHL_OVERLOAD Lanes16 less_equal16(float16 a, float16 b) { return a <= b; }
-SAHL_OVERLOAD Lanes16 equal16(int16 a, int16 b) { return a == b; }
-SAHL_OVERLOAD Lanes16 less16(int16 a, int16 b) { return a < b; }
+SAHL_OVERLOAD LaneMask equalg(floatg a, floatg b) { return a == b; }
+SAHL_OVERLOAD LaneMask lessg(floatg a, floatg b) { return a < b; }
+SAHL_OVERLOAD LaneMask less_equalg(floatg a, floatg b) { return a <= b; }
+SAHL_OVERLOAD LaneMask equalg(intg a, intg b) { return a == b; }
+SAHL_OVERLOAD LaneMask lessg(intg a, intg b) { return a < b; }
 #endif
-SAHL_OVERLOAD float16 select16(Lanes16 lanes, float16 a, float16 b) { return select(b, a, lanes); }
-SAHL_OVERLOAD int16 select16(Lanes16 lanes, int16 a, int16 b) { return select(b, a, lanes); }
-static inline bool any16(Lanes16 lanes) { return sign_bits8(lanes.lo | lanes.hi) != 0u; }
-static inline uint bits16(Lanes16 lanes) { return sign_bits8(lanes.lo) | sign_bits8(lanes.hi) << 8; }
-static inline Lanes16 lanes16(uint bits) {
-    const int16 bit = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-    return ((int16)((int)bits) & bit) != 0;
-}
-static inline Lanes16 not16(Lanes16 lanes) { return ~lanes; }
+SAHL_OVERLOAD floatg selectg(LaneMask lanes, floatg a, floatg b) { return select(b, a, lanes); }
+SAHL_OVERLOAD intg selectg(LaneMask lanes, intg a, intg b) { return select(b, a, lanes); }
+static inline bool anyg(LaneMask lanes) { return sign_bits8(lanes) != 0u; }
+static inline LaneMask notg(LaneMask lanes) { return ~lanes; }
+static inline float leastg(floatg v) { return least8(v); }
+static inline float greatestg(floatg v) { return greatest8(v); }
 
 static inline uint mask8_le(float8 a, float8 b) { return sign_bits8(a <= b); }
-static inline uint mask16_le(float16 a, float16 b) { return bits16(a <= b); }
-static inline uint mask16_ge(float16 a, float16 b) { return bits16(a >= b); }
+static inline uint mask16_le(float16 a, float16 b) {
+    const int16 lanes = a <= b;
+    return sign_bits8(lanes.lo) | sign_bits8(lanes.hi) << 8;
+}
 
 #endif
+
+static inline uint mask16_ge(float16 a, float16 b) { return mask16_le(b, a); }
 
 #ifdef SAHL_AVX2
 
@@ -151,20 +180,6 @@ constant ulong bit_places[256] = {SAHL_PLACES6(0ul), SAHL_PLACES6(7ul)};
 static inline int8 set_bits8(uint mask) { return convert_int8(as_uchar8(bit_places[mask])); }
 
 #endif
-
-static inline float least16(float16 v) {
-    float8 a = SAHL_MIN(v.lo, v.hi);
-    float4 b = SAHL_MIN(a.lo, a.hi);
-    float2 c = SAHL_MIN(b.lo, b.hi);
-    return SAHL_MIN(c.x, c.y);
-}
-
-static inline float greatest16(float16 v) {
-    float8 a = SAHL_MAX(v.lo, v.hi);
-    float4 b = SAHL_MAX(a.lo, a.hi);
-    float2 c = SAHL_MAX(b.lo, b.hi);
-    return SAHL_MAX(c.x, c.y);
-}
 
 /// Asks for `lines` cache lines from `p` on.
 static inline void prefetch_lines(const global void* p, uint lines) {

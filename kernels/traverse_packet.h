@@ -5,11 +5,11 @@
 // far planes and the order of children are the same for all rays. At a node one test of the pass's
 // interval of rays against eight boxes (Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing
 // Algorithm", sec. 3; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire
-// Ray Packets") drops most children; those left are prefetched and tested by groups of sixteen rays. In
-// a leaf one triangle or other shape at a time meets sixteen rays.
+// Ray Packets") drops most children; those left are prefetched and tested by groups of rays (simd.h). In
+// a leaf one triangle or other shape at a time meets a group.
 // Instances wait until their place in the tree has been passed; then the packet's rays are transformed
 // and walk the group's tree by passes of their own.
-// Pro: memory is read once for 128 rays, and all arithmetic is sixteen wide. Con: rays that part ways
+// Pro: memory is read once for 128 rays, and all arithmetic is as wide as registers. Con: rays that part ways
 // drag each other along; traverse_stream.h is for those.
 #ifndef SAHL_TRAVERSE_PACKET_H
 #define SAHL_TRAVERSE_PACKET_H
@@ -29,6 +29,15 @@ static inline float8 first_crossing(float8 planes, float origin, float inverse_l
 static inline float8 last_crossing(float8 planes, float origin, float inverse_lo, float inverse_hi) {
     float8 distance = planes - origin;
     return SAHL_MAX(distance * inverse_lo, distance * inverse_hi);
+}
+
+/// The groups that have a ray which reaches `entry`. `group_far`: where the farthest of each ends.
+static inline uint groups_that_reach(float entry, const float* group_far) {
+#if SAHL_PACKET_GROUPS == 8
+    return mask8_le((float8)(entry), vload8(0, group_far));
+#else
+    return mask16_le((float16)(entry), vload16(0, group_far));
+#endif
 }
 
 /// The children that rays of the pass may meet; *entry: the nearest that any enters each.
@@ -54,7 +63,7 @@ static inline uint children_of_interest(const global BvhNode* node, const Pass* 
 /// The groups of `groups` of which a ray meets child `slot`. Boxes grow by the pass's margin instead of
 /// having each ray's own, as loading those would take as long as all the rest.
 static inline uint groups_that_meet(const global BvhNode* node, uint slot, const Pass* pass,
-                                    const RayGroup* rays, const float16* cull_far, uint groups) {
+                                    const RayGroup* rays, const floatg* cull_far, uint groups) {
     const global float* planes = (const global float*)node + slot;
     float near[3], far[3];
 #pragma unroll
@@ -67,46 +76,42 @@ static inline uint groups_that_meet(const global BvhNode* node, uint slot, const
     }
     uint met = 0;
     if (pass->axes.common_origin) {
-#pragma unroll
-        for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-            if (groups >> g & 1u) {
-                const float16* r = rays[g].inverse;
-                float16 enter = SAHL_MAX(SAHL_MAX(near[0] * r[0], near[1] * r[1]),
-                                         SAHL_MAX(near[2] * r[2], (float16)(0.0f)));
-                float16 leave =
-                    SAHL_MIN(SAHL_MIN(far[0] * r[0], far[1] * r[1]), SAHL_MIN(far[2] * r[2], cull_far[g]));
-                met |= (uint)any16(less_equal16(enter, leave)) << g;
-            }
+        for (; groups != 0u; groups &= groups - 1u) {
+            const uint g = lowest_lane(groups);
+            const floatg* r = rays[g].inverse;
+            floatg enter =
+                SAHL_MAX(SAHL_MAX(near[0] * r[0], near[1] * r[1]), SAHL_MAX(near[2] * r[2], (floatg)(0.0f)));
+            floatg leave =
+                SAHL_MIN(SAHL_MIN(far[0] * r[0], far[1] * r[1]), SAHL_MIN(far[2] * r[2], cull_far[g]));
+            met |= (uint)anyg(less_equalg(enter, leave)) << g;
         }
         return met;
     }
-#pragma unroll
-    for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-        if (groups >> g & 1u) {
-            const float16* r = rays[g].inverse;
-            const float16* c = rays[g].addend;
-            float16 enter =
-                SAHL_MAX(SAHL_MAX(fma((float16)(near[0]), r[0], c[0]), fma((float16)(near[1]), r[1], c[1])),
-                         SAHL_MAX(fma((float16)(near[2]), r[2], c[2]), (float16)(0.0f)));
-            float16 leave =
-                SAHL_MIN(SAHL_MIN(fma((float16)(far[0]), r[0], c[0]), fma((float16)(far[1]), r[1], c[1])),
-                         SAHL_MIN(fma((float16)(far[2]), r[2], c[2]), cull_far[g]));
-            met |= (uint)any16(less_equal16(enter, leave)) << g;
-        }
+    for (; groups != 0u; groups &= groups - 1u) {
+        const uint g = lowest_lane(groups);
+        const floatg* r = rays[g].inverse;
+        const floatg* c = rays[g].addend;
+        floatg enter =
+            SAHL_MAX(SAHL_MAX(fma((floatg)(near[0]), r[0], c[0]), fma((floatg)(near[1]), r[1], c[1])),
+                     SAHL_MAX(fma((floatg)(near[2]), r[2], c[2]), (floatg)(0.0f)));
+        floatg leave =
+            SAHL_MIN(SAHL_MIN(fma((floatg)(far[0]), r[0], c[0]), fma((floatg)(far[1]), r[1], c[1])),
+                     SAHL_MIN(fma((floatg)(far[2]), r[2], c[2]), cull_far[g]));
+        met |= (uint)anyg(less_equalg(enter, leave)) << g;
     }
     return met;
 }
 
 /// A leaf's one block of any kind but triangles. Returns whether a range has changed.
-SAHL_NOINLINE bool intersect_shapes16(const Bvh* bvh, uint child, const GroupTest* test) {
+SAHL_NOINLINE bool intersect_shapes_group(const Bvh* bvh, uint child, const GroupTest* test) {
     const global uchar* block = leaf_block(bvh, child);
     switch (child_kind(child)) {
         case SAHL_KIND_SPHERE:
-            return intersect_spheres16(test, (const global SphereBlock*)block);
+            return intersect_spheres_group(test, (const global SphereBlock*)block);
         case SAHL_KIND_POLYGON:
-            return intersect_polygon16(test, (const global PolygonBlock*)block, bvh->outlines);
+            return intersect_polygon_group(test, (const global PolygonBlock*)block, bvh->outlines);
         default:
-            return intersect_quadrics16(test, (const global QuadricBlock*)block, child_kind(child));
+            return intersect_quadrics_group(test, (const global QuadricBlock*)block, child_kind(child));
     }
 }
 
@@ -119,7 +124,7 @@ SAHL_NOINLINE void enter_instance(const Bvh* bvh, Packet* packet, uint groups, u
         }
         const RayGroup* from = packet->rays[0] + g;
         RayGroup* to = packet->rays[1] + g;
-        for (uint lane = 0; lane < 16u; ++lane) {
+        for (uint lane = 0; lane < SAHL_GROUP_RAYS; ++lane) {
             float3 o = (float3)(lane_of(from->origin[0], lane), lane_of(from->origin[1], lane),
                                 lane_of(from->origin[2], lane));
             float3 d = (float3)(lane_of(from->direction[0], lane), lane_of(from->direction[1], lane),
@@ -134,8 +139,8 @@ SAHL_NOINLINE void enter_instance(const Bvh* bvh, Packet* packet, uint groups, u
             ((float*)&to->direction[2])[lane] = d.z;
         }
         prepare_box_tests(to, instance->extent);
-        to->exclude = select16(equal16(packet->hits[g].start_instance, (int16)((int)i + 1)),
-                               packet->hits[g].start_primitive, (int16)((int)SAHL_NO_PRIMITIVE));
+        to->exclude = selectg(equalg(packet->hits[g].start_instance, (intg)((int)i + 1)),
+                              packet->hits[g].start_primitive, (intg)((int)SAHL_NO_PRIMITIVE));
     }
 }
 
@@ -149,17 +154,17 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
     uint waiting[SAHL_WAITING_INSTANCES], waiting_groups[SAHL_WAITING_INSTANCES];
     uint waiting_count = 0;
     // Where ranges end, and beyond which boxes are culled: for each ray, for each group.
-    float16 far[SAHL_PACKET_GROUPS], cull_far[SAHL_PACKET_GROUPS];
+    floatg far[SAHL_PACKET_GROUPS], cull_far[SAHL_PACKET_GROUPS];
     float group_far[SAHL_PACKET_GROUPS];
-    int16 pass_numbers[SAHL_LEVELS][SAHL_PACKET_GROUPS];
+    intg pass_numbers[SAHL_LEVELS][SAHL_PACKET_GROUPS];
 
     uint level = 0, root = 0, instance = SAHL_WORLD, groups = (1u << SAHL_PACKET_GROUPS) - 1u;
     uint size = 0, base = 0;
     float extent = bvh->extent;
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         prepare_box_tests(packet->rays[0] + g, extent);
-        packet->rays[0][g].exclude = select16(equal16(hits[g].start_instance, (int16)((int)SAHL_WORLD)),
-                                              hits[g].start_primitive, (int16)((int)SAHL_NO_PRIMITIVE));
+        packet->rays[0][g].exclude = selectg(equalg(hits[g].start_instance, (intg)((int)SAHL_WORLD)),
+                                             hits[g].start_primitive, (intg)((int)SAHL_NO_PRIMITIVE));
     }
     uint passes = passes_of(packet->rays[0], hits, groups, pass_numbers[0]);
     uint world_passes = 0;
@@ -209,7 +214,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
         while (size > base && waiting_count < SAHL_WAITING_INSTANCES) {
             --size;
             const uint child = stack[size];
-            uint met = mask8_le((float8)(entries[size]), vload8(0, group_far)) & stack_groups[size];
+            uint met = groups_that_reach(entries[size], group_far) & stack_groups[size];
             if (met == 0u) {
                 continue;
             }
@@ -225,7 +230,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                     uint next = node->child[slot];
                     prefetch_child(bvh, next);
                     SAHL_COUNT(bvh, SAHL_COUNT_FLOP,
-                               16u * popcount(met) *
+                               SAHL_GROUP_RAYS * popcount(met) *
                                    (pass.axes.common_origin ? SAHL_COMMON_BOX_FLOP : SAHL_BOX_FLOP));
                     uint meeting = groups_that_meet(node, slot, &pass, rays, cull_far, met);
                     stack[size] = next;
@@ -242,7 +247,7 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                 continue;
             }
             bool taken = false;
-            SAHL_COUNT_BLOCK(bvh, child_kind(child), 16u * popcount(met));
+            SAHL_COUNT_BLOCK(bvh, child_kind(child), SAHL_GROUP_RAYS * popcount(met));
             if (child_kind(child) == SAHL_KIND_TRIANGLE) {
                 const global TriangleBlock* block = (const global TriangleBlock*)leaf_block(bvh, child);
                 LazyPlanes planes;
@@ -256,10 +261,10 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                 }
                 for (; met != 0u; met &= met - 1u) {
                     uint g = lowest_lane(met);
-                    if (intersect_triangles16(block, &planes, shifted, rays + g, &pass.axes, far + g,
-                                              hits + g, any_hit)) {
+                    if (intersect_triangles_group(block, &planes, shifted, rays + g, &pass.axes, far + g,
+                                                  hits + g, any_hit)) {
                         cull_far[g] = far[g] * SAHL_CULL_SLACK;
-                        group_far[g] = greatest16(cull_far[g]);
+                        group_far[g] = greatestg(cull_far[g]);
                         taken = true;
                     }
                 }
@@ -267,9 +272,9 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
                 for (; met != 0u; met &= met - 1u) {
                     uint g = lowest_lane(met);
                     const GroupTest test = {rays + g, &pass.axes, far + g, hits + g, any_hit};
-                    if (intersect_shapes16(bvh, child, &test)) {
+                    if (intersect_shapes_group(bvh, child, &test)) {
                         cull_far[g] = far[g] * SAHL_CULL_SLACK;
-                        group_far[g] = greatest16(cull_far[g]);
+                        group_far[g] = greatestg(cull_far[g]);
                         taken = true;
                     }
                 }
@@ -285,8 +290,8 @@ SAHL_INLINE void trace_packet(const Bvh* bvh, Packet* packet, bool any_hit) {
             }
         }
         for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
-            Lanes16 active = equal16(pass_numbers[level][g], (int16)((int)number));
-            hits[g].t = select16(active, far[g], hits[g].t);
+            LaneMask active = equalg(pass_numbers[level][g], (intg)((int)number));
+            hits[g].t = selectg(active, far[g], hits[g].t);
         }
         if (size == base) {
             passes &= passes - 1u;

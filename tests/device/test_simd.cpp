@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
@@ -25,24 +26,22 @@ kernel void masks(const global float* a, const global float* b, global uint* out
         out[4 * i + 3] = mask4(x.s0123 < y.s0123);
     }
 }
+// Array k of `out` is that of a result of all lanes.
 kernel void groups(const global float* a, const global float* b, global uint* out, const uint count) {
     TEST_FOR_EACH(i, count) {
-        float16 x = vload16(i, a), y = vload16(i, b);
-        int16 m = as_int16(x), n = as_int16(y);
-        global uint* to = out + 42u * i;
-        Lanes16 less = less16(x, y);
-        to[0] = bits16(equal16(x, y));
-        to[1] = bits16(less);
-        to[2] = bits16(less_equal16(x, y));
-        to[3] = bits16(equal16(m, n));
-        to[4] = bits16(less16(m, n));
-        to[5] = bits16(not16(less)) & 0xffffu;
-        to[6] = any16(less);
-        to[7] = bits16(lanes16(bits16(less)));
-        to[8] = as_uint(least16(fabs(x)));
-        to[9] = as_uint(greatest16(fabs(x)));
-        vstore16(as_uint16(select16(less, x, y)), 0, to + 10);
-        vstore16(as_uint16(select16(less, m, n)), 0, to + 26);
+        for (uint first = 16u * i; first < 16u * (i + 1u); first += SAHL_GROUP_RAYS) {
+            floatg x = vloadg(0, a + first), y = vloadg(0, b + first);
+            intg m = as_intg(x), n = as_intg(y), yes = 1, no = 0;
+            LaneMask less = lessg(x, y);
+            uintg of[12] = {
+                as_uintg(selectg(equalg(x, y), yes, no)), as_uintg(selectg(less, yes, no)),
+                as_uintg(selectg(less_equalg(x, y), yes, no)), as_uintg(selectg(equalg(m, n), yes, no)),
+                as_uintg(selectg(lessg(m, n), yes, no)), as_uintg(selectg(notg(less), yes, no)),
+                as_uintg(selectg(less, x, y)), as_uintg(selectg(less, m, n)), (uintg)((uint)anyg(less)),
+                (uintg)(as_uint(leastg(fabs(x)))), (uintg)(as_uint(greatestg(fabs(x)))),
+                (uintg)((uint)SAHL_GROUP_RAYS)};
+            for (uint k = 0; k < 12u; ++k) { vstoreg(of[k], 0, out + 16u * k * count + first); }
+        }
     }
 }
 kernel void lanes(const global uint* mask, global uint* out, const uint count) {
@@ -112,46 +111,42 @@ TEST_CASE("masks are the comparisons, lane by lane, on every code path") {
     }
 }
 
-TEST_CASE("lanes of sixteen rays are compared, chosen and reduced as one by one, on every code path") {
+TEST_CASE("lanes of groups of rays are compared, chosen and reduced as one by one, on every code path") {
     std::vector<float> a, b;
     fill(a, b);
-    const std::size_t count = a.size() / 16, words = 42;
+    const std::size_t lanes = a.size(), results = 12;
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
     for (const std::string option : {"", "-DSAHL_PLAIN_OPENCL", "-DSAHL_NO_AVX512"}) {
         CAPTURE(option);
         KernelRunner runner(kSimdKernels, option);
-        Buffer out(runner.device(), words * count * sizeof(std::uint32_t), "groups");
-        runner.run("groups", count, runner.upload(a), runner.upload(b), out);
-        const auto got = KernelRunner::download<std::uint32_t>(out, words * count);
-        for (std::size_t i = 0; i < count; ++i) {
-            std::uint32_t wanted[8] = {};
+        Buffer out(runner.device(), results * lanes * sizeof(std::uint32_t), "groups");
+        runner.run("groups", lanes / 16, runner.upload(a), runner.upload(b), out);
+        const auto got = KernelRunner::download<std::uint32_t>(out, results * lanes);
+        const std::size_t width = got[11 * lanes];
+        REQUIRE((width == 8 || width == 16));
+        for (std::size_t group = 0; group < lanes; group += width) {
             float least = std::numeric_limits<float>::infinity(), greatest = 0;
-            bool ordered = true;
-            for (std::uint32_t lane = 0; lane < 16; ++lane) {
-                const float x = a[16 * i + lane], y = b[16 * i + lane];
+            bool ordered = true, any = false;
+            for (std::size_t i = group; i < group + width; ++i) {
+                const float x = a[i], y = b[i];
                 const auto m = std::bit_cast<std::int32_t>(x), n = std::bit_cast<std::int32_t>(y);
-                wanted[0] |= static_cast<std::uint32_t>(x == y) << lane;
-                wanted[1] |= static_cast<std::uint32_t>(x < y) << lane;
-                wanted[2] |= static_cast<std::uint32_t>(x <= y) << lane;
-                wanted[3] |= static_cast<std::uint32_t>(m == n) << lane;
-                wanted[4] |= static_cast<std::uint32_t>(m < n) << lane;
-                REQUIRE(got[words * i + 10 + lane] == bits(x < y ? x : y));
-                REQUIRE(got[words * i + 26 + lane] == bits(x < y ? x : y));
+                const std::uint32_t wanted[] = {
+                    x == y, x < y, x <= y, m == n, m < n, !(x < y), bits(x < y ? x : y), bits(x < y ? x : y)};
+                for (std::size_t k = 0; k < std::size(wanted); ++k) {
+                    CAPTURE(i, k, x, y);
+                    REQUIRE(got[k * lanes + i] == wanted[k]);
+                }
                 least = std::min(least, std::abs(x));
                 greatest = std::max(greatest, std::abs(x));
                 ordered = ordered && !std::isnan(x);
+                any = any || x < y;
             }
-            wanted[5] = ~wanted[1] & 0xffffU;
-            wanted[6] = wanted[1] != 0;
-            wanted[7] = wanted[1];
-            for (std::size_t k = 0; k < 8; ++k) {
-                CAPTURE(i, k);
-                REQUIRE(got[words * i + k] == wanted[k]);
-            }
+            CAPTURE(group);
+            REQUIRE(got[8 * lanes + group] == any);
             // Which NaN wins is not promised.
             if (!ordered) continue;
-            REQUIRE(got[words * i + 8] == bits(least));
-            REQUIRE(got[words * i + 9] == bits(greatest));
+            REQUIRE(got[9 * lanes + group] == bits(least));
+            REQUIRE(got[10 * lanes + group] == bits(greatest));
         }
     }
 }
