@@ -40,7 +40,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BatchJob, scene, asset_root, parameters, came
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ContentFile, name, path, bytes_hash, content_hash)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SceneContent, files, parts)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceOptions, selector, threads, work_group_size, traversal,
-                                   build_options)
+                                   build_options, takes_compile_orders)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EngineIdentity, version, kernels)
 
 }  // namespace sahl
@@ -59,7 +59,7 @@ namespace {
     [[maybe_unused]] const auto& [j1, j2, j3, j4, j5, j6, j7, j8] = j;
     [[maybe_unused]] const auto& [c1, c2, c3, c4, c5] = c;
     [[maybe_unused]] const auto& [s1, s2] = s;
-    [[maybe_unused]] const auto& [d1, d2, d3, d4, d5] = d;
+    [[maybe_unused]] const auto& [d1, d2, d3, d4, d5, d6] = d;
     [[maybe_unused]] const auto& [w1, w2, w3, w4, w5, w6] = w;
 }
 

@@ -19,7 +19,9 @@
 #include "cli/standard_output.h"
 #include "engine/core/log.h"
 #include "engine/core/nearest.h"
+#include "engine/device/compile_helper.h"
 #include "engine/device/device_choice.h"
+#include "engine/self_test/first_use.h"
 
 namespace sahl::cli {
 
@@ -182,6 +184,7 @@ int report(ExitCode code, const std::string& message, const CommonOptions& commo
 
 int guarded_run(int argc, char** argv) {
     CommonOptions common;
+    common.device.takes_compile_orders = true;  // see main()
     try {
         return static_cast<int>(run(argc, argv, common));
     } catch (const Interrupted& interrupted) {
@@ -212,6 +215,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     std::signal(SIGXFSZ, SIG_IGN);
     // Its supervisor tells it of signals.
     if (const auto socket = sahl::cli::worker_socket(argc, argv)) sahl::cli::run_batch_worker(*socket);
+    if (const auto device = sahl::take_compile_order(argc, argv)) sahl::compile_for_another_process(*device);
     sahl::cli::take_signals();
     const int status = sahl::cli::guarded_run(argc, argv);
     sahl::cli::defer_interruption();  // it is at its end: nothing to tell any more

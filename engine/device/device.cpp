@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/device/device_choice.h"
@@ -147,6 +148,8 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
     impl_->traversal = options.traversal.value_or(is_cpu ? Traversal::packet : Traversal::scalar);
     impl_->incoherent_traversal = options.traversal.value_or(is_cpu ? Traversal::stream : Traversal::scalar);
     impl_->build_options = options.build_options;
+    impl_->compiles_beside =
+        options.takes_compile_orders && options.threads != 1 && std::thread::hardware_concurrency() > 1;
     impl_->rays_per_item = chosen.info.is_cpu ? cpu_rays_per_item : gpu_rays_per_item;
     cl_int status = CL_SUCCESS;
     impl_->context = cl::Context(impl_->device, nullptr, nullptr, nullptr, &status);
@@ -170,6 +173,8 @@ Traversal Device::traversal() const { return impl_->traversal; }
 Traversal Device::incoherent_traversal() const { return impl_->incoherent_traversal; }
 
 const std::string& Device::build_options() const { return impl_->build_options; }
+
+bool Device::compiles_beside() const { return impl_->compiles_beside; }
 
 std::size_t Device::max_work_items() const { return impl_->info.is_pocl ? pocl_small_grid : SIZE_MAX; }
 

@@ -48,6 +48,9 @@ struct DeviceOptions {
     /// More options for the OpenCL compiler: -DSAHL_PLAIN_OPENCL for kernels without the host's SIMD
     /// builtins, -DSAHL_NO_AVX512 for those of AVX2 at most. No image depends on them.
     std::string build_options{};
+    /// Whether /proc/self/exe takes compile orders (compile_helper.h): then the first compilation of kernels
+    /// is shared with another process where there is a processor for it.
+    bool takes_compile_orders = false;
 };
 
 /// All OpenCL devices in platform order.
@@ -80,6 +83,9 @@ public:
 
     /// DeviceOptions::build_options.
     const std::string& build_options() const;
+
+    /// Whether a CompileHelper can be started and has a processor.
+    bool compiles_beside() const;
 
     /// Most work-items of one launch. PoCL compiles a kernel once more for grids beyond it.
     std::size_t max_work_items() const;

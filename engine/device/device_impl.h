@@ -33,6 +33,7 @@ struct Device::Impl {
     Traversal traversal = Traversal::scalar;
     Traversal incoherent_traversal = Traversal::scalar;
     std::string build_options;
+    bool compiles_beside = false;
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;

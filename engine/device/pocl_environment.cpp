@@ -19,6 +19,7 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/device/compile_helper.h"
 #include "engine/device/device.h"
 
 namespace sahl {
@@ -28,6 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* folder_prefix = "sahl-pocl-";
 constexpr const char* lock_name = "lock";
+constexpr const char* kernels_name = "kernels";
 constexpr std::uintmax_t least_free = std::uintmax_t{32} << 20;  // bytes; PoCL aborts on a full disk
 
 // The compiler writes up to 2 MB into one file.
@@ -161,12 +163,18 @@ void prepare_pocl(int threads) {
         check_file_size_limit();
         remove_stale_folders(temporary_folder());
         folder_in_use = private_folder().path().c_str();
-        setenv("POCL_CACHE_DIR", folder_in_use, 1);
+        ::mkdir(pocl_folder().c_str(), 0700);
+        setenv("POCL_CACHE_DIR", pocl_folder().c_str(), 1);
         if (threads > 0) setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
     });
 }
 
-const fs::path& pocl_folder() { return private_folder().path(); }
+const fs::path& pocl_folder() {
+    static const fs::path folder = private_folder().path() / kernels_name;
+    return folder;
+}
+
+const fs::path& private_temporary_folder() { return private_folder().path(); }
 
 bool driver_lacks_room() {
     const char* folder = folder_in_use;
@@ -175,6 +183,7 @@ bool driver_lacks_room() {
 }
 
 void exit_at_once(int status) {
+    CompileHelper::kill_running();
     const char* folder = folder_in_use;
     if (folder == nullptr) _exit(status);
     const std::array<char, 4> digits{static_cast<char>('0' + status / 100),

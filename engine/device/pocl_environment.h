@@ -8,7 +8,7 @@
 namespace sahl {
 
 /// Call before every first use of OpenCL; only the first call in a process does something.
-/// Sets POCL_CACHE_DIR to a new folder of this process (mode 0700, below TMPDIR or /tmp), removed
+/// Sets POCL_CACHE_DIR to a folder in a new one of this process (mode 0700, below TMPDIR or /tmp), removed
 /// at exit: PoCL's own cache is shared between racing processes, and code that is damaged there is
 /// run all the same. Folders that dead processes left are removed too. `threads` > 0 becomes
 /// POCL_MAX_PTHREAD_COUNT.
@@ -16,10 +16,13 @@ namespace sahl {
 /// (RLIMIT_FSIZE) is too low, for PoCL would end the process.
 void prepare_pocl(int threads);
 
-/// The private folder; after prepare_pocl().
+/// What PoCL compiles into; after prepare_pocl().
 const std::filesystem::path& pocl_folder();
 
-/// Compiled kernels in the private folder (one shared object each; those that came from the program
+/// The private folder around it.
+const std::filesystem::path& private_temporary_folder();
+
+/// Compiled kernels in PoCL's folder (one shared object each; those that came from the program
 /// cache count too).
 std::size_t count_compiled_kernels();
 

@@ -64,6 +64,17 @@ bool take(std::string_view& packed, fs::path& path, std::string_view& contents) 
     return true;
 }
 
+/// Into PoCL's folder, as a whole or not at all: PoCL would run what is cut short.
+bool write_file(const fs::path& path, std::string_view contents) {
+    const fs::path target = pocl_folder() / path;
+    fs::create_directories(target.parent_path());
+    std::ofstream file(target, std::ios::binary);
+    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
+    if (file.flush()) return true;
+    fs::remove(target);
+    return false;
+}
+
 }  // namespace
 
 bool build_watched(const std::string& key, const std::function<void()>& build) {
@@ -100,20 +111,26 @@ bool unpack_compiled(const std::string& key, const std::string& packed) {
     std::string_view contents;
     while (!rest.empty()) {
         if (!take(rest, path, contents)) return false;
-        const fs::path target = pocl_folder() / path;
         if (path.filename() == program_file) known().by_key[key] = path.parent_path();
-        if (fs::exists(target)) continue;
-        fs::create_directories(target.parent_path());
-        std::ofstream file(target, std::ios::binary);
-        file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-        if (file.flush()) {
-            if (path.extension() == compiled_kernel) ++known().unpacked;
-            continue;
-        }
-        fs::remove(target);  // PoCL would run what is cut short
-        return false;
+        if (fs::exists(pocl_folder() / path)) continue;
+        if (!write_file(path, contents)) return false;
+        if (path.extension() == compiled_kernel) ++known().unpacked;
     }
     return true;
+}
+
+std::size_t add_compiled(const std::string& key, const std::string& packed) {
+    const std::lock_guard lock(known().mutex);
+    std::string_view rest = packed;
+    fs::path path;
+    std::string_view contents;
+    std::size_t added = 0;
+    while (!rest.empty() && take(rest, path, contents)) {
+        const bool ours = path.string().starts_with(known().by_key.at(key).string() + '/');
+        if (!ours || path.extension() != compiled_kernel || fs::exists(pocl_folder() / path)) continue;
+        if (write_file(path, contents)) ++added;
+    }
+    return added;
 }
 
 std::size_t count_unpacked_kernels() {

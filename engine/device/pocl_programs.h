@@ -23,6 +23,10 @@ std::optional<std::string> pack_compiled(const std::string& key);
 /// stay: this process may run their code. False if they are no packed files or cannot be written.
 bool unpack_compiled(const std::string& key, const std::string& packed);
 
+/// Adds packed kernels, which another process has compiled, to those of the program that has been built.
+/// Returns how many.
+std::size_t add_compiled(const std::string& key, const std::string& packed);
+
 /// Kernels that unpack_compiled() has brought into PoCL's folder.
 std::size_t count_unpacked_kernels();
 

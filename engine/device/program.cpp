@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "engine/core/host_steps.h"
+#include "engine/core/log.h"
+#include "engine/device/compile_helper.h"
 #include "engine/device/device_impl.h"
 #include "engine/device/kernel_source.h"
 #include "engine/device/pocl_environment.h"
@@ -28,9 +30,12 @@ struct Program::Impl {
     std::set<std::string> launched{};  ///< kernels that have been compiled for this device
     bool tested = false;               ///< has passed the self-test
     bool cached_tested = false;        ///< and the cache says so
+    std::unique_ptr<CompileHelper> helper{};
+    std::set<std::string> beside{};  ///< kernels that it compiles
 
     ~Impl() { store(); }
     void store() noexcept;
+    void before_first_launch(const std::string& kernel);
 };
 
 struct Kernel::Impl {
@@ -114,7 +119,8 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
                             device.info().driver, options, annotate_build_log(log, source)));
 }
 
-std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more) {
+std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more,
+                                     const std::set<std::string>& beside = {}) {
     const HostStep step("compile");
     // Without warnings, whose number PoCL prints: wide vectors make hundreds on a processor that lacks them.
     std::string options = fmt::format("-cl-std=CL1.2 -w -DSAHL_RAYS_PER_ITEM={}", device.rays_per_item());
@@ -128,6 +134,10 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
         const bool unpacked = cached && unpack_compiled(impl->key, cached->binary);
         const bool compiled = build_watched(impl->key, from_source);
         impl->from_cache = unpacked && !compiled;
+        if (compiled && !beside.empty() && device.compiles_beside()) {
+            impl->helper = CompileHelper::start(device, impl->key, pack_compiled(impl->key).value_or(""));
+            impl->beside = beside;
+        }
     } else {
         if (cached) impl->program = build_from_binary(device, cached->binary, options);
         impl->from_cache = impl->program() != nullptr;
@@ -167,8 +177,17 @@ void Program::Impl::store() noexcept try {
     // What is not cached is compiled again in the next run.
 }
 
-Program::Program(Device& device, const std::vector<std::string>& sources, const std::string& options)
-    : impl_(build(device, expand_files(sources), options)) {}
+void Program::Impl::before_first_launch(const std::string& kernel) {
+    if (!helper || !beside.contains(kernel)) return;
+    // Where it has failed PoCL compiles them at their launch, as any other kernel.
+    const std::size_t added = add_compiled(key, helper->take());
+    helper.reset();
+    log_debug(fmt::format("{} kernels were compiled by another process meanwhile", added));
+}
+
+Program::Program(Device& device, const std::vector<std::string>& sources, const std::string& options,
+                 const std::set<std::string>& beside)
+    : impl_(build(device, expand_files(sources), options, beside)) {}
 
 Program::Program(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
@@ -189,6 +208,11 @@ Kernel Program::kernel(const std::string& name) {
 }
 
 void Program::store_binary() { impl_->store(); }
+
+std::optional<std::string> Program::compiled_files() {
+    impl_->device.impl().queue.finish();
+    return pack_compiled(impl_->key);
+}
 
 bool Program::from_cache() const { return impl_->from_cache; }
 
@@ -233,6 +257,7 @@ void Kernel::enqueue(const Launch& launch, std::uint32_t argument_count) {
                     fmt::format("kernel {}: {} work-items in one launch, {} runs at most {}", impl_->name,
                                 global, device.info().name, device.max_work_items()));
     }
+    if (!impl_->launched) impl_->program->before_first_launch(impl_->name);
     LaunchLog::Impl& log = device.launches().impl();
     cl::Event event;
     const cl_int status =

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -68,8 +70,11 @@ class Program {
 public:
     /// `sources`: file names below kernels/, e.g. {"generate.cl", "shade.cl"}.
     /// `options`: further compiler options, e.g. "-DNAME=1".
+    /// `beside`: kernels that a CompileHelper may compile, if the device has one; they are waited for at
+    /// their first launch.
     /// Throws Error(device) with device, options, log and the source lines the log speaks of.
-    Program(Device& device, const std::vector<std::string>& sources, const std::string& options = "");
+    Program(Device& device, const std::vector<std::string>& sources, const std::string& options = "",
+            const std::set<std::string>& beside = {});
     /// The same from a source text (with includes of kernels/ files), for tests.
     static Program from_text(Device& device, const std::string& text, const std::string& options = "");
     ~Program();
@@ -82,6 +87,10 @@ public:
     /// waits for the queue then. PoCL compiles a kernel at its first launch: call this after the
     /// first frame. The end of the program and its kernels does it too.
     void store_binary();
+
+    /// What PoCL has compiled so far, packed (pocl_programs.h); nothing of other drivers. Waits for the
+    /// queue.
+    std::optional<std::string> compiled_files();
 
     /// Whether the program came from the cache.
     bool from_cache() const;

@@ -1,6 +1,7 @@
 #include "engine/render/launches.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -82,7 +83,12 @@ std::vector<std::string> wavefront_sources(Traversal traversal) {
             traversing("shadow", traversal) + ".cl", "compact.cl"};
 }
 
-Program build_wavefront_program(Device& device) { return {device, wavefront_sources(device.traversal())}; }
+Program build_wavefront_program(Device& device) {
+    // About half of the work, and what is needed last.
+    const std::set<std::string> beside{traversing("shadow", device.traversal()), "count_children",
+                                       "sum_children", "compact"};
+    return {device, wavefront_sources(device.traversal()), "", beside};
+}
 
 Program build_counting_program(Device& device, Traversal traversal) {
     return {device, wavefront_sources(traversal), counting_option};

@@ -12,4 +12,7 @@ namespace sahl {
 void test_before_first_use(Device& device, Program& program, WavefrontKernels& kernels);
 void test_before_first_use(Device& device, Program& program, Kernel& describe, WavefrontKernels& kernels);
 
+/// What the process of a CompileHelper does: compiles what build_wavefront_program() leaves to it, and ends.
+[[noreturn]] void compile_for_another_process(const DeviceOptions& options);
+
 }  // namespace sahl

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
 #include "engine/core/log.h"
+#include "engine/device/compile_helper.h"
 #include "engine/self_test/every_feature.h"
 #include "engine/self_test/first_use.h"
 #include "engine/self_test/kernel_tests.h"
@@ -175,6 +179,27 @@ void test_before_first_use(Device& device, Program& program, WavefrontKernels& k
     const auto start = std::chrono::steady_clock::now();
     Bench bench(device, kernels);
     conclude(device, program, test_wavefront(bench, test_waves()), start);
+}
+
+void compile_for_another_process(const DeviceOptions& options) {
+    std::optional<std::string> compiled;
+    try {
+        Device device(options);
+        Program program = build_wavefront_program(device);
+        WavefrontKernels kernels(device.traversal(), program);
+        Bench bench(device, kernels);
+        // A hit of which nothing becomes: PoCL compiles what is launched, in this order.
+        const WaitingBatch batch{0, 1, 0};
+        RayQueues& queues = bench.queues;
+        launch_shadow(bench.wavefront, batch, queues.contributions[0]);
+        launch_compact(bench.wavefront, batch, queues.batches[0], queues.batches[1], queues.contributions[0]);
+        launch_count_children(bench.wavefront, batch);
+        launch_sum_children(bench.wavefront, batch, queues.contributions[0]);
+        compiled = program.compiled_files();
+    } catch (const std::exception&) {
+        // Who has asked finds out by itself, and can say it.
+    }
+    deliver_compiled(compiled);
 }
 
 void test_before_first_use(Device& device, Program& program, Kernel& describe, WavefrontKernels& kernels) {

@@ -24,26 +24,10 @@ using Clock = std::chrono::steady_clock;
 
 int count(int in_short, int in_full) { return full_tests() ? in_full : in_short; }
 
-/// Processes that `parent` has started.
-std::vector<pid_t> children_of(pid_t parent) {
-    std::vector<pid_t> children;
-    const std::string id = std::to_string(parent);
-    std::ifstream file("/proc/" + id + "/task/" + id + "/children");
-    for (pid_t child = 0; file >> child;) children.push_back(child);
-    return children;
-}
-
 void wait_until_dead(pid_t process) {
     // It is the child of nobody here: /proc is what there is to ask.
     while (fs::exists("/proc/" + std::to_string(process)))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
-
-/// Waits for it, a minute at most.
-bool comes_true(const std::function<bool()>& condition) {
-    const Clock::time_point end = Clock::now() + std::chrono::minutes(1);
-    while (!condition() && Clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return condition();
 }
 
 using Pixels = std::map<std::string, std::vector<float>>;

@@ -9,8 +9,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <fstream>
+#include <string>
 #include <system_error>
+#include <thread>
 
 namespace sahl::tests {
 
@@ -184,6 +188,21 @@ ProcessResult Process::finish() {
     }
     impl_->wait();
     return std::move(impl_->result);
+}
+
+std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    const std::string id = std::to_string(parent);
+    std::ifstream file("/proc/" + id + "/task/" + id + "/children");
+    for (pid_t child = 0; file >> child;) children.push_back(child);
+    return children;
+}
+
+bool comes_true(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!condition() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return condition();
 }
 
 ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options) {

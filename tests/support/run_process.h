@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -53,6 +54,12 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Processes that the first thread of `parent` has started.
+std::vector<pid_t> children_of(pid_t parent);
+
+/// Waits for it, a minute at most.
+bool comes_true(const std::function<bool()>& condition);
 
 /// Runs `command` to its end.
 ProcessResult run_process(const std::vector<std::string>& command, const ProcessOptions& options = {});
