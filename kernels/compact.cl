@@ -56,6 +56,18 @@ kernel void sum_children(global uint* block_counts, const global uint* block_sha
 static inline void move_numbers(const global uint* from, const uint* place, uint count, global uint* next,
                                 global uint* waiting, uint capacity, uint to) {
     const uint fitting = to < capacity ? SAHL_MIN(count, capacity - to) : 0u;
+    if (count > 0u && fitting == count && place[count - 1u] - place[0] == count - 1u) {
+        // Side by side, as where all of a block's rays are reflected.
+        const global uint* source = from + place[0];
+        uint k = 0;
+        for (; k + 8u <= count; k += 8u) {
+            vstore8(vload8(0, source + k), 0, next + to + k);
+        }
+        for (; k < count; ++k) {
+            next[to + k] = source[k];
+        }
+        return;
+    }
     for (uint k = 0; k < fitting; ++k) {
         next[to + k] = from[place[k]];
     }

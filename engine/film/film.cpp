@@ -19,7 +19,7 @@ constexpr std::size_t block = 512;  ///< contributions converted at once; the bl
 /// Nearest multiple of 2^-32, halves away from zero, for |value| <= max_contribution. Every
 /// operation is exact or truncates, so that the rounding mode does not matter; no branch and no
 /// integer over 32 bits before the last line, so that it runs in SIMD lanes on every processor.
-std::int64_t to_fixed(float value) {
+[[gnu::always_inline]] inline std::int64_t to_fixed(float value) {
     const auto high = static_cast<std::int32_t>(value * 0x1p13F);                // |high| <= 2^30
     const float rest = (value - static_cast<float>(high) * 0x1p-13F) * 0x1p32F;  // |rest| < 2^19
     const auto low = static_cast<std::int32_t>(rest);
@@ -35,7 +35,7 @@ struct Counts {
 
 /// Converts up to `block` values of a channel. Compares and clamps bit patterns: as integers,
 /// magnitudes are in the order of the floats, and the loop stays free of branches.
-Counts convert(std::span<const float> values, std::int64_t* fixed) {
+[[gnu::always_inline]] inline Counts convert_in_lanes(std::span<const float> values, std::int64_t* fixed) {
     constexpr auto largest = std::bit_cast<std::int32_t>(Film::max_contribution);
     constexpr auto infinity = std::bit_cast<std::int32_t>(std::numeric_limits<float>::infinity());
     std::int32_t non_finite = 0;
@@ -51,6 +51,21 @@ Counts convert(std::span<const float> values, std::int64_t* fixed) {
     }
     return {.non_finite = static_cast<std::uint32_t>(non_finite),
             .clamped = static_cast<std::uint32_t>(above - non_finite)};
+}
+
+#ifdef __x86_64__
+[[gnu::target("avx2")]] Counts convert_by_avx2(std::span<const float> values, std::int64_t* fixed) {
+    return convert_in_lanes(values, fixed);
+}
+#endif
+
+/// convert_in_lanes() by what the processor has: the same numbers.
+Counts convert(std::span<const float> values, std::int64_t* fixed) {
+#ifdef __x86_64__
+    static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+    if (has_avx2) return convert_by_avx2(values, fixed);
+#endif
+    return convert_in_lanes(values, fixed);
 }
 
 /// Modulo 2^64: what a sum passes through on the way does not matter, only where it ends.
