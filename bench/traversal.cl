@@ -21,6 +21,7 @@ kernel void occluded_scalar(const global BvhNode* nodes, const global uchar* lea
 static inline void gather_rays(ShadowRays* list, const global float* rays, const global uint* ray_ids,
                                const global float* t_max, uint capacity, uint first, uint count) {
     const uint end = SAHL_MIN(first + SAHL_SHADOW_RAYS, count);
+    list->crossings = 0;
     list->count = 0;
     for (uint i = first; i < end; i += SAHL_LANES) {
         RayLanes lanes;

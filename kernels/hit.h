@@ -29,7 +29,7 @@ typedef struct {
 #define SAHL_HIT_NOTHING 0u
 #define SAHL_HIT_TRANSPARENT 1u
 #define SAHL_HIT_OPAQUE 2u
-// Not an occlusion: the state is the first member of Crossings, which take all hits.
+// Not an occlusion: the state is the first member of CollectedCrossings, which take all hits.
 #define SAHL_HIT_COLLECT 4u
 
 /// A surface's place in the order of surfaces: by instance, then by primitive.
@@ -60,21 +60,28 @@ static inline HitState hit_state(float t_min, float t_max) {
 // More than most rays meet; the others walk on behind the last.
 #define SAHL_MOST_CROSSINGS 8u
 
-/// The first hits of state's range, in order.
+/// The first hits of a ray, in order.
 typedef struct {
-    HitState state;
     float t[SAHL_MOST_CROSSINGS];
     ulong rank[SAHL_MOST_CROSSINGS];
     uint count;
 } Crossings;
 
-/// Takes a hit of state's range into its place; where that is full, the last one makes room and hits behind
-/// the new last one are of no interest any more.
+/// The first hits of state's range.
+typedef struct {
+    HitState state;
+    Crossings crossings;
+} CollectedCrossings;
+
+/// Takes a hit into its place; where that is full, the last one makes room.
 static inline void insert_crossing(Crossings* crossings, float t, ulong rank) {
     uint place = crossings->count;
     while (place > 0u && (t < crossings->t[place - 1u] ||
                           (t == crossings->t[place - 1u] && rank <= crossings->rank[place - 1u]))) {
         --place;
+    }
+    if (place == SAHL_MOST_CROSSINGS) {
+        return;
     }
     if (place < crossings->count && t == crossings->t[place] && rank == crossings->rank[place]) {
         return;  // a triangle in two leaves
@@ -87,9 +94,15 @@ static inline void insert_crossing(Crossings* crossings, float t, ulong rank) {
     crossings->t[place] = t;
     crossings->rank[place] = rank;
     crossings->count = last + 1u;
+}
+
+/// The same for a hit of state's range: what lies behind a full list's last is of no interest any more.
+static inline void collect_crossing(CollectedCrossings* collected, float t, ulong rank) {
+    Crossings* crossings = &collected->crossings;
+    insert_crossing(crossings, t, rank);
     if (crossings->count == SAHL_MOST_CROSSINGS) {
-        crossings->state.t = crossings->t[last];
-        crossings->state.before_rank = crossings->rank[last];
+        collected->state.t = crossings->t[SAHL_MOST_CROSSINGS - 1u];
+        collected->state.before_rank = crossings->rank[SAHL_MOST_CROSSINGS - 1u];
     }
 }
 
@@ -99,7 +112,7 @@ static inline bool is_seen_from(uint id, bool front) {
 }
 
 /// Offers a hit. A shadow ray (any_hit) keeps its range when it meets a transparent surface and
-/// only remembers it, Crossings gather all hits. NaN distances are never taken.
+/// only remembers it, CollectedCrossings gather all hits. NaN distances are never taken.
 static inline void offer_hit(HitState* state, float t, float u, float v, uint id, bool any_hit) {
     uint primitive = id & SAHL_ID_MASK;
     ulong rank = surface_rank(state->inside_of, primitive);
@@ -113,7 +126,7 @@ static inline void offer_hit(HitState* state, float t, float u, float v, uint id
         return;
     }
     if (state->occlusion == SAHL_HIT_COLLECT) {
-        insert_crossing((Crossings*)state, t, rank);
+        collect_crossing((CollectedCrossings*)state, t, rank);
         return;
     }
     state->t = t;

@@ -142,6 +142,7 @@ static inline void clear_hits(GroupHits* hits) {
     hits->primitive = (intg)(-1);
     hits->instance = (intg)(-1);
     hits->occlusion = (intg)((int)SAHL_HIT_NOTHING);
+    hits->crossings = 0;
 }
 
 /// Rays first.. of a batch, up to `end`.
@@ -177,6 +178,7 @@ SAHL_NOINLINE void load_shadow_packet(Packet* packet, const ShadowRays* list, ui
         RayGroup* group = packet->rays[0] + g;
         GroupHits* hits = packet->hits + g;
         clear_hits(hits);
+        hits->crossings = list->crossings != 0 ? list->crossings + first : 0;
         if (first + SAHL_GROUP_RAYS <= list->count) {
             for (uint k = 0; k < 3u; ++k) {
                 group->origin[k] = vloadg(0, list->origin[k] + first);

@@ -21,7 +21,8 @@ typedef struct {
     floatg u, v;
     intg primitive;  // -1 while there is none, before all others in the order of ties
     intg instance;
-    intg occlusion;  // any hit only: SAHL_HIT_*
+    intg occlusion;        // any hit only: SAHL_HIT_*
+    Crossings* crossings;  // any hit only: if not null, of rays that have met transparent surfaces
     intg start_primitive, start_instance;
 } GroupHits;
 
@@ -91,6 +92,18 @@ static inline LaneMask seen_from_group(uint id, LaneMask front) {
     return id & SAHL_ID_FRONT_ONLY ? seen & front : seen;
 }
 
+/// Remembers where the rays `lanes` meet a transparent surface. `occlusion`: what they have met before.
+SAHL_NOINLINE void keep_crossings(Crossings* crossings, const intg* occlusion, uint lanes, const floatg* t,
+                                  ulong rank) {
+    for (; lanes != 0u; lanes &= lanes - 1u) {
+        const uint lane = lowest_lane(lanes);
+        if (((const uint*)occlusion)[lane] == SAHL_HIT_NOTHING) {
+            crossings[lane].count = 0;
+        }
+        insert_crossing(crossings + lane, lane_of(*t, lane), rank);
+    }
+}
+
 /// Gives the rays `lanes` hits on surface `id` of `instance`; for shadow rays (any_hit) only what kind of
 /// surface that is, and an opaque one ends their range at -inf. Returns whether a range has changed.
 static inline bool take_hits(GroupHits* hits, floatg* far, LaneMask lanes, floatg t, floatg u, floatg v,
@@ -98,6 +111,10 @@ static inline bool take_hits(GroupHits* hits, floatg* far, LaneMask lanes, float
     if (any_hit) {
         bool transparent = (id & SAHL_ID_TRANSPARENT) != 0u;
         int met = transparent ? SAHL_HIT_TRANSPARENT : SAHL_HIT_OPAQUE;
+        if (transparent && hits->crossings != 0) {
+            keep_crossings(hits->crossings, &hits->occlusion, bitsg(lanes), &t,
+                           surface_rank(instance, id & SAHL_ID_MASK));
+        }
         hits->occlusion = selectg(lanes, hits->occlusion | (intg)(met), hits->occlusion);
         if (!transparent) {
             *far = selectg(lanes, (floatg)(-INFINITY), *far);

@@ -10,6 +10,7 @@ typedef struct {
     float t_max[SAHL_SHADOW_RAYS];
     uint start_primitive[SAHL_SHADOW_RAYS], start_instance[SAHL_SHADOW_RAYS];
     uint occlusion[SAHL_SHADOW_RAYS];  // SAHL_HIT_*, once traced
+    Crossings* crossings;  // if not null, there packets leave those of transparent surfaces alone, by ray
     uint count;
 } ShadowRays;
 

@@ -27,7 +27,7 @@ kernel void shadow_scalar(const global BvhNode* nodes, const global uchar* leave
                 const Bvh bvh = {nodes, leaves, outlines, instances, scene.extent SAHL_COUNTS_AT(k)};
                 add_light(&work, k,
                           brought_light(&work, l, k) *
-                              transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max)));
+                              transmittance(&bvh, &work, &ray, t_max, any_hit(&bvh, &ray, t_max), 0));
             }
         }
     }

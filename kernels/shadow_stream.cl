@@ -18,6 +18,7 @@ kernel void shadow_stream(const global BvhNode* nodes, const global uchar* leave
     const uint first = (uint)get_global_id(0) * SAHL_SHADOW_RAYS;
     if (first < count) {
         ShadowRays list;
+        list.crossings = 0;
         uint hits[SAHL_SHADOW_RAYS];
         for (uint l = 0; l < scene.light_count; ++l) {
             gather_shadow_rays(&work, l, first, SAHL_MIN(first + SAHL_SHADOW_RAYS, count), &list, hits);

@@ -49,26 +49,31 @@ static inline RayLanes rays_to_light(const ShadowWork* work, uint l, uint i) {
 
 /// The part of the light that comes through along `ray` up to t_max, which meets SAHL_HIT_* `occlusion`: 0
 /// behind an opaque surface, else the product of the transmissions of the surfaces in between, each crossing
-/// once, in order.
+/// once, in order. `first`: the first crossings, if they are known.
 static inline float3 transmittance(const Bvh* bvh, const ShadowWork* work, const Ray* ray, float t_max,
-                                   uint occlusion) {
+                                   uint occlusion, const Crossings* first) {
     SAHL_COUNT(bvh, SAHL_COUNT_LIT, occlusion == SAHL_HIT_OPAQUE ? 0u : 1u);
     if (occlusion != SAHL_HIT_TRANSPARENT) {
         return (float3)(occlusion == SAHL_HIT_NOTHING ? 1.0f : 0.0f);
     }
     float3 through = (float3)(1.0f);
     HitState range = hit_state(0.0f, t_max);
-    Crossings crossings;
-    do {
-        collect_crossings(bvh, ray, range, &crossings);
-        for (uint k = 0; k < crossings.count; ++k) {
-            const uint primitive = (uint)crossings.rank[k];
-            through *= load3(work->materials[work->primitives[primitive].material].transmission);
-            range.t_min = crossings.t[k];
-            range.min_rank = crossings.rank[k];
+    Crossings collected;
+    for (const Crossings* crossings = first;; crossings = &collected) {
+        if (crossings != first || first == 0) {
+            collect_crossings(bvh, ray, range, &collected);
+            crossings = &collected;
         }
-    } while (crossings.count == SAHL_MOST_CROSSINGS);
-    return through;
+        for (uint k = 0; k < crossings->count; ++k) {
+            const uint primitive = (uint)crossings->rank[k];
+            through *= load3(work->materials[work->primitives[primitive].material].transmission);
+            range.t_min = crossings->t[k];
+            range.min_rank = crossings->rank[k];
+        }
+        if (crossings->count < SAHL_MOST_CROSSINGS) {
+            return through;
+        }
+    }
 }
 
 static inline void add_light(const ShadowWork* work, uint i, float3 light) {
@@ -101,9 +106,10 @@ SAHL_NOINLINE void add_light_of_list(const Bvh* bvh, const ShadowWork* work, uin
     for (uint k = 0; k < list->count; ++k) {
         if (list->occlusion[k] != SAHL_HIT_OPAQUE) {
             const Ray ray = shadow_ray(list, k);
-            add_light(
-                work, hits[k],
-                brought_light(work, l, hits[k]) * transmittance(bvh, work, &ray, t_max, list->occlusion[k]));
+            const Crossings* first = list->crossings != 0 ? list->crossings + k : 0;
+            add_light(work, hits[k],
+                      brought_light(work, l, hits[k]) *
+                          transmittance(bvh, work, &ray, t_max, list->occlusion[k], first));
         }
     }
 }

@@ -104,6 +104,7 @@ SAHL_OVERLOAD floatg selectg(LaneMask lanes, floatg a, floatg b) {
 }
 SAHL_OVERLOAD intg selectg(LaneMask lanes, intg a, intg b) { return __builtin_ia32_selectd_512(lanes, a, b); }
 static inline bool anyg(LaneMask lanes) { return lanes != 0; }
+static inline uint bitsg(LaneMask lanes) { return lanes; }
 static inline LaneMask notg(LaneMask lanes) { return (LaneMask)~lanes; }
 static inline float leastg(floatg v) { return least8(SAHL_MIN(v.lo, v.hi)); }
 static inline float greatestg(floatg v) { return greatest8(SAHL_MAX(v.lo, v.hi)); }
@@ -148,6 +149,7 @@ SAHL_OVERLOAD LaneMask lessg(intg a, intg b) { return a < b; }
 SAHL_OVERLOAD floatg selectg(LaneMask lanes, floatg a, floatg b) { return select(b, a, lanes); }
 SAHL_OVERLOAD intg selectg(LaneMask lanes, intg a, intg b) { return select(b, a, lanes); }
 static inline bool anyg(LaneMask lanes) { return sign_bits8(lanes) != 0u; }
+static inline uint bitsg(LaneMask lanes) { return sign_bits8(lanes); }
 static inline LaneMask notg(LaneMask lanes) { return ~lanes; }
 static inline float leastg(floatg v) { return least8(v); }
 static inline float greatestg(floatg v) { return greatest8(v); }

@@ -163,10 +163,12 @@ SAHL_NOINLINE HitState closest_hit(const Bvh* bvh, const Ray* ray, HitState rang
 
 /// The first hits of range, as many as `crossings` have room for.
 SAHL_NOINLINE void collect_crossings(const Bvh* bvh, const Ray* ray, HitState range, Crossings* crossings) {
-    crossings->state = range;
-    crossings->state.occlusion = SAHL_HIT_COLLECT;
-    crossings->count = 0;
-    traverse(bvh, ray, &crossings->state, false);
+    CollectedCrossings collected;
+    collected.state = range;
+    collected.state.occlusion = SAHL_HIT_COLLECT;
+    collected.crossings.count = 0;
+    traverse(bvh, ray, &collected.state, false);
+    *crossings = collected.crossings;
 }
 
 /// SAHL_HIT_OPAQUE, SAHL_HIT_TRANSPARENT (at least one, nothing opaque) or SAHL_HIT_NOTHING in

@@ -45,6 +45,7 @@ kernel void occlusion_scalar(const global BvhNode* nodes, const global uchar* le
 
 static inline void load_list(ShadowRays* list, const global float* rays, const global uint* ray_ids,
                              const global float* t_max, uint capacity, uint first, uint count) {
+    list->crossings = 0;
     list->count = min(count - first, SAHL_SHADOW_RAYS);
     for (uint k = 0; k < list->count; ++k) {
         const Ray ray = load_ray(rays, ray_ids, capacity, first + k);

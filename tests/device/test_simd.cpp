@@ -33,14 +33,14 @@ kernel void groups(const global float* a, const global float* b, global uint* ou
             floatg x = vloadg(0, a + first), y = vloadg(0, b + first);
             intg m = as_intg(x), n = as_intg(y), yes = 1, no = 0;
             LaneMask less = lessg(x, y);
-            uintg of[12] = {
+            uintg of[13] = {
                 as_uintg(selectg(equalg(x, y), yes, no)), as_uintg(selectg(less, yes, no)),
                 as_uintg(selectg(less_equalg(x, y), yes, no)), as_uintg(selectg(equalg(m, n), yes, no)),
                 as_uintg(selectg(lessg(m, n), yes, no)), as_uintg(selectg(notg(less), yes, no)),
                 as_uintg(selectg(less, x, y)), as_uintg(selectg(less, m, n)), (uintg)((uint)anyg(less)),
                 (uintg)(as_uint(leastg(fabs(x)))), (uintg)(as_uint(greatestg(fabs(x)))),
-                (uintg)((uint)SAHL_GROUP_RAYS)};
-            for (uint k = 0; k < 12u; ++k) { vstoreg(of[k], 0, out + 16u * k * count + first); }
+                (uintg)((uint)SAHL_GROUP_RAYS), (uintg)(bitsg(less))};
+            for (uint k = 0; k < 13u; ++k) { vstoreg(of[k], 0, out + 16u * k * count + first); }
         }
     }
 }
@@ -114,7 +114,7 @@ TEST_CASE("masks are the comparisons, lane by lane, on every code path") {
 TEST_CASE("lanes of groups of rays are compared, chosen and reduced as one by one, on every code path") {
     std::vector<float> a, b;
     fill(a, b);
-    const std::size_t lanes = a.size(), results = 12;
+    const std::size_t lanes = a.size(), results = 13;
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
     for (const std::string option : {"", "-DSAHL_PLAIN_OPENCL", "-DSAHL_NO_AVX512"}) {
         CAPTURE(option);
@@ -126,7 +126,8 @@ TEST_CASE("lanes of groups of rays are compared, chosen and reduced as one by on
         REQUIRE((width == 8 || width == 16));
         for (std::size_t group = 0; group < lanes; group += width) {
             float least = std::numeric_limits<float>::infinity(), greatest = 0;
-            bool ordered = true, any = false;
+            bool ordered = true;
+            std::uint32_t bits_below = 0;
             for (std::size_t i = group; i < group + width; ++i) {
                 const float x = a[i], y = b[i];
                 const auto m = std::bit_cast<std::int32_t>(x), n = std::bit_cast<std::int32_t>(y);
@@ -139,10 +140,11 @@ TEST_CASE("lanes of groups of rays are compared, chosen and reduced as one by on
                 least = std::min(least, std::abs(x));
                 greatest = std::max(greatest, std::abs(x));
                 ordered = ordered && !std::isnan(x);
-                any = any || x < y;
+                bits_below |= static_cast<std::uint32_t>(x < y) << (i - group);
             }
             CAPTURE(group);
-            REQUIRE(got[8 * lanes + group] == any);
+            REQUIRE(got[8 * lanes + group] == (bits_below != 0));
+            REQUIRE(got[12 * lanes + group] == bits_below);
             // Which NaN wins is not promised.
             if (!ordered) continue;
             REQUIRE(got[9 * lanes + group] == bits(least));
