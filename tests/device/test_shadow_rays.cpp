@@ -135,6 +135,45 @@ TEST_CASE("shadow rays of every traversal let the same light through, and the or
     CHECK(dimmed > 20);
 }
 
+TEST_CASE("shadow rays pass more transparent surfaces than fit into a list, in either order, each once") {
+    // 21 sheets that let different powers of two through, so that products are exact, and a light above.
+    // Points are below all of them, or have the first k above them.
+    constexpr int sheets = 21;
+    RayTracer tracer;
+    Scene scene;
+    for (int k = 0; k < sheets; ++k) {
+        const int place = k * 8 % sheets;  // ids are in another order
+        oracle::add_square(scene, static_cast<float>(place + 1), 4,
+                           oracle::glass(vec3(std::ldexp(1.0F, -(place % 3))), 1));
+    }
+    const float top = sheets + 2;
+    scene.lights = {oracle::point_light(dvec3(0.125, 0.25, top)), oracle::directional_light(dvec3(0, 0, 1)),
+                    oracle::point_light(dvec3(0.125, 0.25, top))};
+    std::vector<TestLitPoint> points;
+    std::vector<float> wanted;
+    for (int i = 0; i < 700; ++i) {
+        const int above = i % (sheets + 1);
+        const float z = static_cast<float>(sheets - above) + 0.5F;
+        points.push_back({vec3(static_cast<float>(i % 7) / 4 - 1, static_cast<float>(i % 11) / 8 - 1, z)});
+        int halvings = 0;
+        for (int place = sheets - above; place < sheets; ++place) halvings += place % 3;
+        wanted.push_back(std::ldexp(1.0F, -halvings));
+    }
+    const std::vector<vec3> got =
+        tracer.arriving(tracer.upload(scene), points, one_channel_each(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        CAPTURE(i);
+        REQUIRE(got[i] == vec3(wanted[i]));
+    }
+    // From above downwards.
+    scene.lights = {oracle::point_light(dvec3(0.125, 0.25, 0)), oracle::directional_light(dvec3(0, 0, -1)),
+                    oracle::point_light(dvec3(0.125, 0.25, 0))};
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].position.z = top;
+    const vec3 all(std::ldexp(1.0F, -sheets));  // 7 times 0 + 1 + 2
+    for (const vec3& light : tracer.arriving(tracer.upload(scene), points, one_channel_each(points.size())))
+        REQUIRE(light == all);
+}
+
 TEST_CASE("shadow rays: batches of any size, points without lamps, and lights that bring nothing") {
     RayTracer tracer;
     Random random(82);
