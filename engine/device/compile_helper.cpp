@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <string_view>
 
 #include "engine/device/pocl_environment.h"
@@ -67,8 +68,9 @@ int file_of(const std::string& text) {
     return -1;
 }
 
-/// The helper's id, for functions that any thread may call at any time.
+/// The helper's id, for functions that any thread may call at any time; or that there is going to be one.
 std::atomic<pid_t> running = 0;
+constexpr pid_t starting = -1;
 
 void wait_for(pid_t id, int& status) {
     while (::waitpid(id, &status, 0) < 0 && errno == EINTR) {
@@ -99,11 +101,13 @@ std::unique_ptr<CompileHelper> CompileHelper::start(const Device& device, const 
     std::array<char*, argument_count + 1> pointers{};
     for (std::size_t i = 0; i < arguments.size(); ++i) pointers[i] = arguments[i].data();
     pid_t id = -1;
+    running = starting;
     const int failed = ::posix_spawn(&id, "/proc/self/exe", &actions, nullptr, pointers.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     ::close(order);
     ::close(pipe[1]);
     if (failed != 0) {
+        running = 0;
         ::close(pipe[0]);
         return nullptr;
     }
@@ -112,8 +116,10 @@ std::unique_ptr<CompileHelper> CompileHelper::start(const Device& device, const 
 }
 
 void CompileHelper::kill_running() {
+    const timespec moment{0, 1'000'000};
+    for (int moments = 0; running == starting && moments < 1000; ++moments) ::nanosleep(&moment, nullptr);
     const pid_t id = running.exchange(0);
-    if (id == 0) return;
+    if (id <= 0) return;
     ::kill(id, SIGKILL);
     int status = 0;
     wait_for(id, status);
