@@ -14,8 +14,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <span>
 #include <string_view>
 
+#include "engine/core/child_process.h"
 #include "engine/device/pocl_environment.h"
 #include "engine/device/pocl_programs.h"
 
@@ -28,14 +30,8 @@ constexpr int output_file = 3;                             // of the helper: dri
 // Arguments behind the name.
 enum : int { of_parent = 1, of_folder, of_device, of_group, of_traversal, of_options, argument_count };
 
-bool write_all(int file, std::string_view rest) {
-    while (!rest.empty()) {
-        const ssize_t written = ::write(file, rest.data(), rest.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        rest.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
+bool write_all(int file, const std::string& text) {
+    return PipeEnd(file).write(std::as_bytes(std::span(text)));
 }
 
 std::string read_all(int file) {
@@ -143,6 +139,9 @@ std::string CompileHelper::take() {
 
 std::optional<DeviceOptions> take_compile_order(int argc, char** argv) {
     if (argc != argument_count || argv[0] != helper_name) return std::nullopt;
+    sigset_t none;  // the other process may hold signals back
+    sigemptyset(&none);
+    pthread_sigmask(SIG_SETMASK, &none, nullptr);
     // PoCL aborts where it lacks room.
     for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGABRT}) std::signal(signal, end);
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
