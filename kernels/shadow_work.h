@@ -59,8 +59,8 @@ static inline float3 transmittance(const Bvh* bvh, const ShadowWork* work, const
     float3 through = (float3)(1.0f);
     HitState range = hit_state(0.0f, t_max);
     Crossings collected;
-    for (const Crossings* crossings = first;; crossings = &collected) {
-        if (crossings != first || first == 0) {
+    for (const Crossings* crossings = first;; crossings = 0) {
+        if (crossings == 0) {
             collect_crossings(bvh, ray, range, &collected);
             crossings = &collected;
         }
