@@ -8,6 +8,7 @@
 #ifndef SAHL_BVH_H
 #define SAHL_BVH_H
 
+#include "kernels/child_order.h"
 #include "kernels/count_visits.h"
 #include "kernels/device_types.h"
 #include "kernels/math.h"
@@ -55,11 +56,15 @@ static inline float8 planes_at(const global BvhNode* node, uint offset) {
 }
 
 /// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
-static inline float4 finite_inverse(float4 d) {
-    const float4 magnitude = fabs(d);
-    const float4 inverse = 1.0f / (magnitude < 1e-18f ? (float4)(1e-18f) : magnitude);
-    return as_float4(as_int4(inverse) | (as_int4(d) & (int)0x80000000));
-}
+#define SAHL_DEFINE_FINITE_INVERSE(FLOAT, INT)                                           \
+    SAHL_OVERLOAD FLOAT finite_inverse(FLOAT d) {                                        \
+        const FLOAT magnitude = fabs(d);                                                 \
+        const FLOAT inverse = 1.0f / (magnitude < 1e-18f ? (FLOAT)(1e-18f) : magnitude); \
+        return as_##FLOAT(as_##INT(inverse) | (as_##INT(d) & (int)0x80000000));          \
+    }
+SAHL_DEFINE_FINITE_INVERSE(float4, int4)
+SAHL_DEFINE_FINITE_INVERSE(float8, int8)
+SAHL_DEFINE_FINITE_INVERSE(float16, int16)
 
 static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float extent) {
     RayBoxTest test;
@@ -108,25 +113,26 @@ typedef struct {
 /// on top. Writes eight entries from `end` on, however many are met. Returns the stack's new end.
 static inline WaitingChild* push_children(const global BvhNode* node, float8 enter, float8 leave,
                                           const RayBoxTest* test, WaitingChild* end) {
-#if defined(SAHL_AVX512) || defined(SAHL_AVX2)
+#if defined(SAHL_AVX512)
     const int8 slots = convert_int8(as_uchar8(vload2(0, test->slots)));
     enter = __builtin_ia32_permvarsf256(enter, slots);
     leave = __builtin_ia32_permvarsf256(leave, slots);
-    int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
+    const int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
     const uint met = mask8_le(enter, leave);
-#ifdef SAHL_AVX2
-    const int8 places = set_bits8(met);
-    child = __builtin_ia32_permvarsi256(child, places);
-    enter = __builtin_ia32_permvarsf256(enter, places);
-#endif
     const uint16 pairs = __builtin_shufflevector(as_uint8(child), as_uint8(enter), 0, 8, 1, 9, 2, 10, 3, 11,
                                                  4, 12, 5, 13, 6, 14, 7, 15);
-#ifdef SAHL_AVX2
-    vstore16(pairs, 0, (uint*)end);
-#else
     vstore8(as_ulong8(__builtin_ia32_compressdi512_mask(as_long8(pairs), (long8)(0), (uchar)met)), 0,
             (ulong*)end);
-#endif
+    return end + popcount(met);
+#elif defined(SAHL_AVX2)
+    const uint met = mask8_le(enter, leave);
+    const int order = (int)child_order[256u * test->octant + met];
+    // Places 0, 1, 4, 5, then 2, 3, 6, 7: what unpacks two vectors takes halves of each half.
+    const int8 slots = (int8)(order) >> (int8)(0, 4, 16, 20, 8, 12, 24, 28);
+    const int8 child = __builtin_ia32_permvarsi256(as_int8(vload8(0, node->child)), slots);
+    const int8 entry = as_int8(__builtin_ia32_permvarsf256(enter, slots));
+    vstore8(__builtin_shufflevector(child, entry, 0, 8, 1, 9, 4, 12, 5, 13), 0, (int*)end);
+    vstore8(__builtin_shufflevector(child, entry, 2, 10, 3, 11, 6, 14, 7, 15), 0, (int*)(end + 4));
     return end + popcount(met);
 #else
     uint order = permute_by_octant(mask8_le(enter, leave), test->octant);

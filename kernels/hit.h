@@ -32,6 +32,19 @@ typedef struct {
 // Not an occlusion: the state is the first member of CollectedCrossings, which take all hits.
 #define SAHL_HIT_COLLECT 4u
 
+/// Which rays are ones that can be traced, for vectors of them.
+#define SAHL_DEFINE_ARE_TRACEABLE(FLOAT, INT)                                                                \
+    SAHL_OVERLOAD INT are_traceable(const FLOAT* origin, const FLOAT* direction) {                           \
+        const FLOAT sum = (origin[0] + origin[1] + origin[2]) * 0.0f +                                       \
+                          (direction[0] + direction[1] + direction[2]) * 0.0f;                               \
+        const FLOAT length = SAHL_MAX(SAHL_MAX(fabs(direction[0]), fabs(direction[1])), fabs(direction[2])); \
+        const FLOAT offset = SAHL_MAX(SAHL_MAX(fabs(origin[0]), fabs(origin[1])), fabs(origin[2]));          \
+        return (sum == 0.0f) & (length >= SAHL_SHORTEST_DIRECTION) & (length <= SAHL_LARGEST_COORDINATE) &   \
+               (offset <= SAHL_LARGEST_COORDINATE);                                                          \
+    }
+SAHL_DEFINE_ARE_TRACEABLE(float8, int8)
+SAHL_DEFINE_ARE_TRACEABLE(float16, int16)
+
 /// A surface's place in the order of surfaces: by instance, then by primitive.
 static inline ulong surface_rank(uint instance, uint primitive) { return (ulong)instance << 32 | primitive; }
 

@@ -43,7 +43,8 @@ SAHL_NOINLINE uint passes_of(const RayGroup* rays, const GroupHits* hits, uint g
     for (uint g = 0; g < SAHL_PACKET_GROUPS; ++g) {
         pass_numbers[g] = -1;
         if (groups >> g & 1u) {
-            LaneMask alive = are_traceable(rays + g) & lessg((floatg)(-INFINITY), hits[g].t);
+            LaneMask alive = lessg(are_traceable(rays[g].origin, rays[g].direction), (intg)(0)) &
+                             lessg((floatg)(-INFINITY), hits[g].t);
             pass_numbers[g] = selectg(alive, pass_of(rays + g), (intg)(-1));
             passes |= selectg(alive, (intg)(1) << pass_of(rays + g), (intg)(0));
         }

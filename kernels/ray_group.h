@@ -40,35 +40,16 @@ static inline void set_lane(RayGroup* rays, GroupHits* hits, uint lane, const Ra
     ((int*)&hits->start_instance)[lane] = (int)ray->instance;
 }
 
-/// 1/d, with ±1e18 for components that are (nearly) 0, as finite_inverse().
-static inline floatg finite_inverse_group(floatg d) {
-    floatg magnitude = fabs(d);
-    magnitude = magnitude < 1e-18f ? (floatg)(1e-18f) : magnitude;
-    return as_floatg(as_intg(1.0f / magnitude) | (as_intg(d) & (intg)(0x80000000)));
-}
-
 /// What ray_box_test() is for one ray.
 static inline void prepare_box_tests(RayGroup* rays, float extent) {
     for (uint axis = 0; axis < 3u; ++axis) {
-        floatg r = finite_inverse_group(rays->direction[axis]);
+        floatg r = finite_inverse(rays->direction[axis]);
         floatg o = rays->origin[axis];
         floatg e = (fabs(o) + extent) * 0x1p-20f * fabs(r);
         rays->inverse[axis] = r;
         rays->addend[axis] = -(o * r);
         rays->slack[axis] = e;
     }
-}
-
-/// can_meet_anything() for a group of rays.
-static inline LaneMask are_traceable(const RayGroup* rays) {
-    const floatg* o = rays->origin;
-    const floatg* d = rays->direction;
-    const floatg sum = (o[0] + o[1] + o[2]) * 0.0f + (d[0] + d[1] + d[2]) * 0.0f;
-    const floatg length = SAHL_MAX(SAHL_MAX(fabs(d[0]), fabs(d[1])), fabs(d[2]));
-    const floatg offset = SAHL_MAX(SAHL_MAX(fabs(o[0]), fabs(o[1])), fabs(o[2]));
-    return equalg(sum, (floatg)(0.0f)) & less_equalg((floatg)(SAHL_SHORTEST_DIRECTION), length) &
-           less_equalg(length, (floatg)(SAHL_LARGEST_COORDINATE)) &
-           less_equalg(offset, (floatg)(SAHL_LARGEST_COORDINATE));
 }
 
 /// The lanes whose hit at `t` on a surface comes before the one they have.

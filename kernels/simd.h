@@ -164,24 +164,30 @@ static inline uint mask16_le(float16 a, float16 b) {
 
 static inline uint mask16_ge(float16 a, float16 b) { return mask16_le(b, a); }
 
-#ifdef SAHL_AVX2
-
-// Byte k of entry m: the place of m's k-th set bit, from the lowest on. AVX2 cannot compress, and what BMI2
-// has instead is slow on some processors. Of masks by their bits from the highest on, whose places are moved
-// up where a lower one is set.
-#define SAHL_PLACES0(above) above, (above) << 8
-#define SAHL_PLACES1(above) SAHL_PLACES0(above), SAHL_PLACES0((above) << 8 | 1)
-#define SAHL_PLACES2(above) SAHL_PLACES1(above), SAHL_PLACES1((above) << 8 | 2)
-#define SAHL_PLACES3(above) SAHL_PLACES2(above), SAHL_PLACES2((above) << 8 | 3)
-#define SAHL_PLACES4(above) SAHL_PLACES3(above), SAHL_PLACES3((above) << 8 | 4)
-#define SAHL_PLACES5(above) SAHL_PLACES4(above), SAHL_PLACES4((above) << 8 | 5)
-#define SAHL_PLACES6(above) SAHL_PLACES5(above), SAHL_PLACES5((above) << 8 | 6)
-constant ulong bit_places[256] = {SAHL_PLACES6(0ul), SAHL_PLACES6(7ul)};
-
-/// Where the set bits of an 8-bit mask are, from the lowest on; elements behind them are 0.
-static inline int8 set_bits8(uint mask) { return convert_int8(as_uchar8(bit_places[mask])); }
-
-#endif
+/// Rows of a square become its columns.
+SAHL_INLINE void transpose8(float8* rows) {
+    float8 pairs[8], quarters[8];
+#pragma unroll
+    for (uint k = 0; k < 8u; k += 2u) {
+        const float8 a = rows[k], b = rows[k + 1u];
+        pairs[k] = (float8)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5);
+        pairs[k + 1u] = (float8)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7);
+    }
+#pragma unroll
+    for (uint k = 0; k < 8u; k += 4u) {
+#pragma unroll
+        for (uint half_of_it = 0; half_of_it < 2u; ++half_of_it) {
+            const float8 a = pairs[k + half_of_it], b = pairs[k + 2u + half_of_it];
+            quarters[k + 2u * half_of_it] = (float8)(a.s01, b.s01, a.s45, b.s45);
+            quarters[k + 2u * half_of_it + 1u] = (float8)(a.s23, b.s23, a.s67, b.s67);
+        }
+    }
+#pragma unroll
+    for (uint k = 0; k < 4u; ++k) {
+        rows[k] = (float8)(quarters[k].lo, quarters[k + 4u].lo);
+        rows[k + 4u] = (float8)(quarters[k].hi, quarters[k + 4u].hi);
+    }
+}
 
 /// Asks for `lines` cache lines from `p` on.
 static inline void prefetch_lines(const global void* p, uint lines) {

@@ -24,14 +24,11 @@ static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
     return bvh->leaves + (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
 }
 
-/// Asks for the memory of a child, node or leaf, without a branch on which of them it is, which no processor
-/// can predict.
+/// Asks for the memory of a child, node or leaf: four lines. Which of them it is no processor can predict, so
+/// both places are found and one is chosen.
 static inline void prefetch_child(const Bvh* bvh, uint child) {
-    const uint leaf = child >> 31;
-    const ulong arrays[2] = {(ulong)bvh->nodes, (ulong)bvh->leaves};
-    // A node is four lines.
-    const ulong offset = (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES << (2u - 2u * leaf);
-    prefetch_lines((const global void*)(arrays[leaf] + offset), 4u);
+    const ulong node = (ulong)(bvh->nodes + child), leaf = (ulong)leaf_block(bvh, child);
+    prefetch_lines((const global void*)(child & SAHL_CHILD_LEAF ? leaf : node), 4u);
 }
 
 static inline void intersect_leaf(const Bvh* bvh, uint child, const Ray* ray, const RayShear* shear,

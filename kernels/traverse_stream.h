@@ -12,37 +12,19 @@
 #ifndef SAHL_TRAVERSE_STREAM_H
 #define SAHL_TRAVERSE_STREAM_H
 
-#include "kernels/ray_batch.h"
-#include "kernels/rays_per_item.h"
+#include "kernels/stream_ray.h"
 #include "kernels/traverse_scalar.h"
 
+// More hide more of what each waits for, but have to fit into the nearest cache.
+#ifdef SAHL_AVX512
 #define SAHL_STREAM_WIDTH 32u
+#else
+#define SAHL_STREAM_WIDTH 20u
+#endif
 
 // Ends of stacks: of the ray's, and of an instance's part of it. They look like leaves.
 #define SAHL_CHILD_END 0xffffffffu
 #define SAHL_CHILD_LEAVE 0xfffffffeu
-
-/// The rays of a stream and what takes their hits: those of a batch (ray_batch.h), or for any hit a list.
-typedef struct {
-    const global float* rays;
-    const global uint* ray_ids;
-    global float* hits;
-    global uint* hit_ids;
-    uint capacity;
-    ShadowRays* shadow_rays;
-} RaySource;
-
-/// A ray in flight. What node steps need is one cache line.
-typedef struct {
-    RayBoxTest boxes;  // in the world or in an instance
-    float cull_t;
-    uint index;         // of the ray
-    WaitingChild* top;  // of its stack: the ray's next step
-    RayShear shear;
-    HitState state;
-    Ray ray;  // in the same space
-    WaitingChild* bottom;
-} __attribute__((aligned(64))) StreamRay;
 
 /// Waiting children. An odd number of cache lines, so that the stacks' bottoms do not compete for the same
 /// sets of the cache.
@@ -77,24 +59,31 @@ static inline void drop_hidden(StreamRay* ray) {
     ray->top = top;
 }
 
-static inline Ray source_ray(const RaySource* source, uint index, bool any_hit) {
-    return any_hit ? shadow_ray(source->shadow_rays, index)
-                   : load_ray(source->rays, source->ray_ids, source->capacity, index);
-}
+/// The rays of a source that have not set out yet.
+typedef struct {
+    StreamRay* prepared[SAHL_LANES];  // rays next - next % SAHL_LANES on, and where those of them that have
+                                      // set out left place
+    uint next, end;
+} WaitingRays;
 
-static inline void start_ray(const Bvh* bvh, const RaySource* source, uint index, StreamRay* ray,
-                             bool any_hit) {
-    const Ray from = source_ray(source, index, any_hit);
-    const float t_max = any_hit ? source->shadow_rays->t_max[index] : INFINITY;
-    const TracedRay traced = traced_ray(from.origin, from.direction, &from, SAHL_WORLD, bvh->extent);
-    put_into_space(ray, &traced);
-    ray->state = hit_state(0.0f, t_max);
-    ray->cull_t = t_max * SAHL_CULL_SLACK;
-    ray->index = index;
-    ray->top = ray->bottom;
-    if (can_meet_anything(&from)) {
-        push(ray, 0u, 0.0f);
+/// Has the next ray of the source set out on the stack of one that is done, whose place another may take.
+/// Returns 0 if there is none.
+static inline StreamRay* start_ray(const Bvh* bvh, const RaySource* source, WaitingRays* waiting,
+                                   StreamRay* done, bool any_hit) {
+    if (waiting->next == waiting->end) {
+        return 0;
     }
+    const uint k = waiting->next % SAHL_LANES;
+    if (k == 0u) {
+        prepare_rays(source, waiting->next, bvh->extent, waiting->prepared, any_hit);
+    }
+    StreamRay* ray = waiting->prepared[k];
+    waiting->prepared[k] = done;
+    ++waiting->next;
+    ray->bottom = done->bottom;
+    ray->top = ray->bottom;
+    push(ray, 0u, 0.0f);
+    return ray;
 }
 
 static inline void finish_ray(const RaySource* source, const StreamRay* ray, bool any_hit) {
@@ -177,21 +166,25 @@ SAHL_INLINE void enlist(const Bvh* bvh, StreamRay* ray, StepList* at_node, StepL
     at_leaf->count += leaf;
 }
 
-/// Traces rays first..end-1 of the source: the first hits, or with any_hit what kinds of surfaces there are.
+/// Traces rays first..end-1 of the source, `first` being a multiple of SAHL_LANES: the first hits, or with
+/// any_hit what kinds of surfaces there are.
 SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint first, uint end, bool any_hit) {
-    StreamRay flight[SAHL_STREAM_WIDTH];
+    StreamRay places[SAHL_STREAM_WIDTH + SAHL_LANES];
     StreamStack stacks[SAHL_STREAM_WIDTH];
+    WaitingRays waiting;
+    waiting.next = first;
+    waiting.end = end;
+    for (uint k = 0; k < SAHL_LANES; ++k) {
+        waiting.prepared[k] = places + SAHL_STREAM_WIDTH + k;
+    }
     StepList at_node, at_leaf;
     at_node.count = 0u;
     at_leaf.count = 0u;
-    uint next = first;
-    for (uint place = 0; place < SAHL_STREAM_WIDTH && next < end; ++place, ++next) {
-        StreamRay* ray = flight + place;
-        ray->bottom = stacks[place].waiting;
-        ray->bottom->child = SAHL_CHILD_END;
-        ray->bottom->entry = -INFINITY;
-        start_ray(bvh, source, next, ray, any_hit);
-        at_leaf.rays[at_leaf.count++] = ray;
+    for (uint k = 0; k < SAHL_STREAM_WIDTH && waiting.next < end; ++k) {
+        places[k].bottom = stacks[k].waiting;
+        places[k].bottom->child = SAHL_CHILD_END;
+        places[k].bottom->entry = -INFINITY;
+        at_leaf.rays[at_leaf.count++] = start_ray(bvh, source, &waiting, places + k, any_hit);
     }
     while (at_node.count + at_leaf.count != 0u) {
         const uint nodes = at_node.count;
@@ -210,11 +203,10 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
             const uint child = ray->top->child;
             if (child == SAHL_CHILD_END) {
                 finish_ray(source, ray, any_hit);
-                if (next == end) {
+                ray = start_ray(bvh, source, &waiting, ray, any_hit);
+                if (ray == 0) {
                     continue;
                 }
-                start_ray(bvh, source, next, ray, any_hit);
-                ++next;
             } else if (child & SAHL_CHILD_LEAF) {
                 visit_leaf(bvh, source, ray, any_hit);
             }
