@@ -3,7 +3,8 @@
 //
 // Children are visited in rising order of slot ^ octant, so a stack takes them in falling order. Entry
 // 256 octant + m of the table lists in that order the slots whose bits are set in m, four bits each from the
-// lowest on. It is 8 KiB, as a table for one octant, with masks and slots permuted to suit, takes longer.
+// lowest on. It is 8 KiB, as a table for one octant, with masks and slots permuted to suit, takes longer; and
+// it is spelt out as far as macros would make much text of it, which every start of the program reads.
 #ifndef SAHL_CHILD_ORDER_H
 #define SAHL_CHILD_ORDER_H
 
@@ -11,40 +12,64 @@
 
 #ifdef SAHL_AVX2
 
-#define SAHL_MET(m, s) ((m) >> (s)&1)
-#define SAHL_FOR_16(DO, o, hi)                                                                        \
-    DO(o, hi, 0), DO(o, hi, 1), DO(o, hi, 2), DO(o, hi, 3), DO(o, hi, 4), DO(o, hi, 5), DO(o, hi, 6), \
-        DO(o, hi, 7), DO(o, hi, 8), DO(o, hi, 9), DO(o, hi, 10), DO(o, hi, 11), DO(o, hi, 12),        \
-        DO(o, hi, 13), DO(o, hi, 14), DO(o, hi, 15)
+// clang-format off
+// The slots from 4 on, by the lower two bits of the octant: their list and how long it is, in bits.
+#define SAHL_HIGH0(ROW) \
+    ROW(0, 0), ROW(4, 4), ROW(5, 4), ROW(0x45, 8), ROW(6, 4), ROW(0x46, 8), \
+    ROW(0x56, 8), ROW(0x456, 12), ROW(7, 4), ROW(0x47, 8), ROW(0x57, 8), ROW(0x457, 12), \
+    ROW(0x67, 8), ROW(0x467, 12), ROW(0x567, 12), ROW(0x4567, 16)
+#define SAHL_HIGH1(ROW) \
+    ROW(0, 0), ROW(4, 4), ROW(5, 4), ROW(0x54, 8), ROW(6, 4), ROW(0x46, 8), \
+    ROW(0x56, 8), ROW(0x546, 12), ROW(7, 4), ROW(0x47, 8), ROW(0x57, 8), ROW(0x547, 12), \
+    ROW(0x76, 8), ROW(0x476, 12), ROW(0x576, 12), ROW(0x5476, 16)
+#define SAHL_HIGH2(ROW) \
+    ROW(0, 0), ROW(4, 4), ROW(5, 4), ROW(0x45, 8), ROW(6, 4), ROW(0x64, 8), \
+    ROW(0x65, 8), ROW(0x645, 12), ROW(7, 4), ROW(0x74, 8), ROW(0x75, 8), ROW(0x745, 12), \
+    ROW(0x67, 8), ROW(0x674, 12), ROW(0x675, 12), ROW(0x6745, 16)
+#define SAHL_HIGH3(ROW) \
+    ROW(0, 0), ROW(4, 4), ROW(5, 4), ROW(0x54, 8), ROW(6, 4), ROW(0x64, 8), \
+    ROW(0x65, 8), ROW(0x654, 12), ROW(7, 4), ROW(0x74, 8), ROW(0x75, 8), ROW(0x754, 12), \
+    ROW(0x76, 8), ROW(0x764, 12), ROW(0x765, 12), ROW(0x7654, 16)
 
-// Lists of slots 0 to 3 and of slots 4 to 7, by the octant's lower two bits: each slot before those listed.
-#define SAHL_BEFORE(s, m, list) ((list) << 4 * SAHL_MET(m, (s)&3) | (s)*SAHL_MET(m, (s)&3))
-#define SAHL_LIST(o, m, first) \
-    SAHL_BEFORE(               \
-        first + (3 ^ o), m,    \
-        SAHL_BEFORE(first + (2 ^ o), m, SAHL_BEFORE(first + (1 ^ o), m, SAHL_BEFORE(first + o, m, 0))))
-#define SAHL_LISTS(o, hi, m) sahl_low_##o##_##m = SAHL_LIST(o, m, 0), sahl_high_##o##_##m = SAHL_LIST(o, m, 4)
-#define SAHL_SIZE(o, hi, m) sahl_size_##m = SAHL_MET(m, 0) + SAHL_MET(m, 1) + SAHL_MET(m, 2) + SAHL_MET(m, 3)
-enum {
-    SAHL_FOR_16(SAHL_LISTS, 0, 0),
-    SAHL_FOR_16(SAHL_LISTS, 1, 0),
-    SAHL_FOR_16(SAHL_LISTS, 2, 0),
-    SAHL_FOR_16(SAHL_LISTS, 3, 0),
-    SAHL_FOR_16(SAHL_SIZE, 0, 0)
-};
+// The slots below 4, behind those or before: where the octant's third bit is set.
+#define SAHL_LOW0_LAST(h, s) \
+    h, h, h | 1 << s, h | 1 << s, h | 2 << s, h | 2 << s, \
+    h | 0x12 << s, h | 0x12 << s, h | 3 << s, h | 3 << s, h | 0x13 << s, h | 0x13 << s, \
+    h | 0x23 << s, h | 0x23 << s, h | 0x123 << s, h | 0x123 << s
+#define SAHL_LOW1_LAST(h, s) \
+    h, h, h | 1 << s, h | 0x10 << s, h | 2 << s, h | 2 << s, \
+    h | 0x12 << s, h | 0x102 << s, h | 3 << s, h | 3 << s, h | 0x13 << s, h | 0x103 << s, \
+    h | 0x32 << s, h | 0x32 << s, h | 0x132 << s, h | 0x1032 << s
+#define SAHL_LOW2_LAST(h, s) \
+    h, h, h | 1 << s, h | 1 << s, h | 2 << s, h | 0x20 << s, \
+    h | 0x21 << s, h | 0x201 << s, h | 3 << s, h | 0x30 << s, h | 0x31 << s, h | 0x301 << s, \
+    h | 0x23 << s, h | 0x230 << s, h | 0x231 << s, h | 0x2301 << s
+#define SAHL_LOW3_LAST(h, s) \
+    h, h, h | 1 << s, h | 0x10 << s, h | 2 << s, h | 0x20 << s, \
+    h | 0x21 << s, h | 0x210 << s, h | 3 << s, h | 0x30 << s, h | 0x31 << s, h | 0x310 << s, \
+    h | 0x32 << s, h | 0x320 << s, h | 0x321 << s, h | 0x3210 << s
+#define SAHL_LOW0_FIRST(h, s) \
+    h, h << 4, 1 | h << 4, 1 | h << 8, 2 | h << 4, 2 | h << 8, \
+    0x12 | h << 8, 0x12 | h << 12, 3 | h << 4, 3 | h << 8, 0x13 | h << 8, 0x13 | h << 12, \
+    0x23 | h << 8, 0x23 | h << 12, 0x123 | h << 12, 0x123 | h << 16
+#define SAHL_LOW1_FIRST(h, s) \
+    h, h << 4, 1 | h << 4, 0x10 | h << 8, 2 | h << 4, 2 | h << 8, \
+    0x12 | h << 8, 0x102 | h << 12, 3 | h << 4, 3 | h << 8, 0x13 | h << 8, 0x103 | h << 12, \
+    0x32 | h << 8, 0x32 | h << 12, 0x132 | h << 12, 0x1032 | h << 16
+#define SAHL_LOW2_FIRST(h, s) \
+    h, h << 4, 1 | h << 4, 1 | h << 8, 2 | h << 4, 0x20 | h << 8, \
+    0x21 | h << 8, 0x201 | h << 12, 3 | h << 4, 0x30 | h << 8, 0x31 | h << 8, 0x301 | h << 12, \
+    0x23 | h << 8, 0x230 | h << 12, 0x231 | h << 12, 0x2301 | h << 16
+#define SAHL_LOW3_FIRST(h, s) \
+    h, h << 4, 1 | h << 4, 0x10 | h << 8, 2 | h << 4, 0x20 | h << 8, \
+    0x21 | h << 8, 0x210 | h << 12, 3 | h << 4, 0x30 | h << 8, 0x31 | h << 8, 0x310 | h << 12, \
+    0x32 | h << 8, 0x320 | h << 12, 0x321 | h << 12, 0x3210 | h << 16
+// clang-format on
 
-// The octant's highest bit says which half comes first.
-#define SAHL_HIGH_FIRST(o, hi, lo) sahl_high_##o##_##hi | sahl_low_##o##_##lo << 4 * sahl_size_##hi
-#define SAHL_LOW_FIRST(o, hi, lo) sahl_low_##o##_##lo | sahl_high_##o##_##hi << 4 * sahl_size_##lo
-#define SAHL_FOR_256(DO, o)                                                                           \
-    SAHL_FOR_16(DO, o, 0), SAHL_FOR_16(DO, o, 1), SAHL_FOR_16(DO, o, 2), SAHL_FOR_16(DO, o, 3),       \
-        SAHL_FOR_16(DO, o, 4), SAHL_FOR_16(DO, o, 5), SAHL_FOR_16(DO, o, 6), SAHL_FOR_16(DO, o, 7),   \
-        SAHL_FOR_16(DO, o, 8), SAHL_FOR_16(DO, o, 9), SAHL_FOR_16(DO, o, 10), SAHL_FOR_16(DO, o, 11), \
-        SAHL_FOR_16(DO, o, 12), SAHL_FOR_16(DO, o, 13), SAHL_FOR_16(DO, o, 14), SAHL_FOR_16(DO, o, 15)
-constant uint child_order[8 * 256] = {SAHL_FOR_256(SAHL_HIGH_FIRST, 0), SAHL_FOR_256(SAHL_HIGH_FIRST, 1),
-                                      SAHL_FOR_256(SAHL_HIGH_FIRST, 2), SAHL_FOR_256(SAHL_HIGH_FIRST, 3),
-                                      SAHL_FOR_256(SAHL_LOW_FIRST, 0),  SAHL_FOR_256(SAHL_LOW_FIRST, 1),
-                                      SAHL_FOR_256(SAHL_LOW_FIRST, 2),  SAHL_FOR_256(SAHL_LOW_FIRST, 3)};
+constant uint child_order[8 * 256] = {SAHL_HIGH0(SAHL_LOW0_LAST),  SAHL_HIGH1(SAHL_LOW1_LAST),
+                                      SAHL_HIGH2(SAHL_LOW2_LAST),  SAHL_HIGH3(SAHL_LOW3_LAST),
+                                      SAHL_HIGH0(SAHL_LOW0_FIRST), SAHL_HIGH1(SAHL_LOW1_FIRST),
+                                      SAHL_HIGH2(SAHL_LOW2_FIRST), SAHL_HIGH3(SAHL_LOW3_FIRST)};
 
 #endif
 
