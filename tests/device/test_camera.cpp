@@ -22,7 +22,10 @@ using Pixel = std::array<std::uint32_t, 2>;
 constexpr const char* kKernels = R"(
 #include "kernels/generate.cl"
 kernel void pixels(const uint width, const uint height, global uint2* out, const uint count) {
-    TEST_FOR_EACH(i, count) { out[i] = crop_pixel(i, width, height); }
+    TEST_FOR_EACH(i, count) {
+        const PixelPlace place = pixel_place(i, width, height);
+        out[i] = (uint2)(place.left + place.column, place.top + place.row);
+    }
 }
 )";
 
