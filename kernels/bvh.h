@@ -42,7 +42,7 @@ typedef struct {
     uchar octant;  // bit k: inverse[k] is negative
     // Kept: compilers make branches of finding them at each node, which no processor can predict.
     NearPlanes near;
-    uint slots[2];  // of children, last to first, a byte each
+    uint slots[2];  // of children, last to first, a byte each: what AVX-512 permutes by
 } RayBoxTest;
 
 static inline NearPlanes near_planes(uint octant) {
@@ -97,7 +97,9 @@ static inline void intersect_children(const global BvhNode* node, const RayBoxTe
     float8 far_x = fma(planes_at(node, near.x ^ 96u), (float8)(r[0]), (float8)(f[0]));
     float8 far_y = fma(planes_at(node, near.y ^ 160u), (float8)(r[1]), (float8)(f[1]));
     float8 far_z = fma(planes_at(node, near.z ^ 224u), (float8)(r[2]), (float8)(f[2]));
-    // No NaN comes here: rays are finite, r is finite and not 0, planes are finite or infinite.
+    // r is finite and not 0, planes are finite or infinite: no NaN comes here but from rays that cannot be
+    // traced. The t_max of these is -inf (stream_ray.h), and SAHL_MIN and SAHL_MAX prefer their second
+    // operand to NaN: they meet nothing.
     *enter = SAHL_MAX(SAHL_MAX(near_x, near_y), SAHL_MAX(near_z, (float8)(t_min)));
     *leave = SAHL_MIN(SAHL_MIN(far_x, far_y), SAHL_MIN(far_z, (float8)(t_max)));
 }

@@ -40,16 +40,16 @@ typedef struct {
 
 /// Of SAHL_LANES samples of `wave` from number `i` on; behind the last, the last.
 static inline CropPixels crop_pixels(const WaveConstants* wave, ulong first, uint i) {
-    const PixelPlace place =
-        pixel_place((uint)((first + i) / wave->samples), wave->crop_width, wave->crop_height);
-    const bool two_rows =
-        place.columns == SAHL_BLOCK_COLUMNS && place.column == 0u && place.row + 2u <= place.rows;
     CropPixels pixels;
-    if (two_rows && wave->samples == 1u && i + SAHL_LANES <= wave->count) {
-        const uintv lane = as_uintv(lane_numbers());
-        pixels.x = place.left + lane % SAHL_BLOCK_COLUMNS;
-        pixels.y = place.top + place.row + lane / SAHL_BLOCK_COLUMNS;
-        return pixels;
+    if (wave->samples == 1u && i + SAHL_LANES <= wave->count) {
+        const PixelPlace place = pixel_place((uint)(first + i), wave->crop_width, wave->crop_height);
+        // Mostly they are two rows of one block.
+        if (place.columns == SAHL_BLOCK_COLUMNS && place.column == 0u && place.row + 2u <= place.rows) {
+            const uintv lane = as_uintv(lane_numbers());
+            pixels.x = place.left + lane % SAHL_BLOCK_COLUMNS;
+            pixels.y = place.top + place.row + lane / SAHL_BLOCK_COLUMNS;
+            return pixels;
+        }
     }
     for (uint k = 0; k < SAHL_LANES; ++k) {
         const ulong sample = first + SAHL_MIN(i + k, wave->count - 1u);

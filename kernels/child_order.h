@@ -3,8 +3,9 @@
 //
 // Children are visited in rising order of slot ^ octant, so a stack takes them in falling order. Entry
 // 256 octant + m of the table lists in that order the slots whose bits are set in m, four bits each from the
-// lowest on. It is 8 KiB, as a table for one octant, with masks and slots permuted to suit, takes longer; and
-// it is spelt out as far as macros would make much text of it, which every start of the program reads.
+// lowest on. It is 8 KiB, as a table for one octant, with masks and slots permuted to suit, is slower. Its
+// parts are spelt out, as macros that make them of single slots expand to much text, which every start has to
+// read.
 #ifndef SAHL_CHILD_ORDER_H
 #define SAHL_CHILD_ORDER_H
 

@@ -32,7 +32,15 @@ typedef struct {
 // Not an occlusion: the state is the first member of CollectedCrossings, which take all hits.
 #define SAHL_HIT_COLLECT 4u
 
-/// Which rays are ones that can be traced, for vectors of them.
+/// Whether the ray is one that can be traced (SAHL_LARGEST_COORDINATE).
+static inline bool can_meet_anything(const Ray* ray) {
+    const float length = max_abs3(ray->direction);
+    return isfinite(dot3(ray->direction, (float3)(1.0f))) && isfinite(dot3(ray->origin, (float3)(1.0f))) &&
+           length >= SAHL_SHORTEST_DIRECTION && length <= SAHL_LARGEST_COORDINATE &&
+           max_abs3(ray->origin) <= SAHL_LARGEST_COORDINATE;
+}
+
+/// can_meet_anything() for vectors of rays.
 #define SAHL_DEFINE_ARE_TRACEABLE(FLOAT, INT)                                                                \
     SAHL_OVERLOAD INT are_traceable(const FLOAT* origin, const FLOAT* direction) {                           \
         const FLOAT sum = (origin[0] + origin[1] + origin[2]) * 0.0f +                                       \

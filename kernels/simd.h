@@ -164,7 +164,7 @@ static inline uint mask16_le(float16 a, float16 b) {
 
 static inline uint mask16_ge(float16 a, float16 b) { return mask16_le(b, a); }
 
-/// Rows of a square become its columns.
+/// Rows of an 8 x 8 square become its columns, in place.
 SAHL_INLINE void transpose8(float8* rows) {
     float8 pairs[8], quarters[8];
 #pragma unroll
@@ -176,10 +176,10 @@ SAHL_INLINE void transpose8(float8* rows) {
 #pragma unroll
     for (uint k = 0; k < 8u; k += 4u) {
 #pragma unroll
-        for (uint half_of_it = 0; half_of_it < 2u; ++half_of_it) {
-            const float8 a = pairs[k + half_of_it], b = pairs[k + 2u + half_of_it];
-            quarters[k + 2u * half_of_it] = (float8)(a.s01, b.s01, a.s45, b.s45);
-            quarters[k + 2u * half_of_it + 1u] = (float8)(a.s23, b.s23, a.s67, b.s67);
+        for (uint odd = 0; odd < 2u; ++odd) {
+            const float8 a = pairs[k + odd], b = pairs[k + 2u + odd];
+            quarters[k + 2u * odd] = (float8)(a.s01, b.s01, a.s45, b.s45);
+            quarters[k + 2u * odd + 1u] = (float8)(a.s23, b.s23, a.s67, b.s67);
         }
     }
 #pragma unroll

@@ -1,6 +1,6 @@
 // A ray of a stream (traverse_stream.h) with all that its tests need, and how SAHL_LANES of them are prepared
-// together: what triangle.h and bvh.h find for one ray, operation by operation, and then turned from numbers
-// of many rays into those of one each.
+// together: what triangle.h and bvh.h find for one ray, operation by operation, and then transposed, from
+// arrays of a number each to one record a ray.
 #ifndef SAHL_STREAM_RAY_H
 #define SAHL_STREAM_RAY_H
 
@@ -35,7 +35,8 @@ static inline Ray source_ray(const RaySource* source, uint index, bool any_hit) 
                    : load_ray(source->rays, source->ray_ids, source->capacity, index);
 }
 
-/// SAHL_LANES rays. Behind the source's last ray they are anything.
+/// SAHL_LANES rays. Behind the source's last they are anything, but there: batches and lists have room for
+/// multiples of SAHL_LANES.
 static inline RayLanes source_lanes(const RaySource* source, uint first, bool any_hit) {
     RayLanes lanes;
     if (any_hit) {
@@ -104,7 +105,7 @@ SAHL_NOINLINE void prepare_rays(const RaySource* source, uint first, float exten
     const floatv origin[3] = {lanes.origin.x, lanes.origin.y, lanes.origin.z};
     const floatv direction[3] = {lanes.direction.x, lanes.direction.y, lanes.direction.z};
     const floatv t_max = any_hit ? vloadv(source->shadow_rays->t_max + first) : (floatv)(INFINITY);
-    // A range that ends before it begins: what cannot be traced meets no box.
+    // A range that ends before it begins: what cannot be traced meets no box (intersect_children()).
     const floatv cull_t = are_traceable(origin, direction) ? t_max * SAHL_CULL_SLACK : (floatv)(-INFINITY);
     const uintv exclude = lanes.instance == SAHL_WORLD ? lanes.primitive : (uintv)(SAHL_NO_PRIMITIVE);
     floatv boxes[16], shear[8];
@@ -127,10 +128,15 @@ SAHL_NOINLINE void prepare_rays(const RaySource* source, uint first, float exten
         ray->state = hit_state(0.0f, ((const float*)&t_max)[k]);
     }
 }
-SAHL_STATIC_ASSERT(sizeof(RayBoxTest) == 48 && __builtin_offsetof(StreamRay, cull_t) == 48 &&
+SAHL_STATIC_ASSERT(__builtin_offsetof(RayBoxTest, octant) == 36 &&
+                       __builtin_offsetof(RayBoxTest, slots) == 40 &&
+                       __builtin_offsetof(StreamRay, cull_t) == 48 &&
                        __builtin_offsetof(StreamRay, index) == 52 && __builtin_offsetof(StreamRay, top) == 56,
                    "the words of box_tests_of_lanes()");
 SAHL_STATIC_ASSERT(sizeof(RayShear) == 32 && __builtin_offsetof(Ray, direction) == 16,
                    "the words of shears_of_lanes() and of rays");
+#ifndef __ENDIAN_LITTLE__
+#error "the octant and near planes of a ray are written as one word, the lowest byte first"
+#endif
 
 #endif

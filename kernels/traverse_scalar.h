@@ -27,7 +27,8 @@ static inline const global uchar* leaf_block(const Bvh* bvh, uint child) {
 /// Asks for the memory of a child, node or leaf: four lines. Which of them it is no processor can predict, so
 /// both places are found and one is chosen.
 static inline void prefetch_child(const Bvh* bvh, uint child) {
-    const ulong node = (ulong)(bvh->nodes + child), leaf = (ulong)leaf_block(bvh, child);
+    const ulong node = (ulong)bvh->nodes + (ulong)child * sizeof(BvhNode);
+    const ulong leaf = (ulong)bvh->leaves + (ulong)(child & SAHL_CHILD_OFFSET_MASK) * SAHL_LEAF_LINE_BYTES;
     prefetch_lines((const global void*)(child & SAHL_CHILD_LEAF ? leaf : node), 4u);
 }
 
@@ -90,14 +91,6 @@ static inline TracedRay traced_in_instance(const Bvh* bvh, const Ray* ray, uint 
     return traced_ray(round3(group_from_world_point(instance, convert_real3(ray->origin))),
                       round3(group_from_world_vector(instance, convert_real3(ray->direction))), ray, i + 1u,
                       instance->extent);
-}
-
-/// Whether the ray is one that can be traced (SAHL_LARGEST_COORDINATE).
-static inline bool can_meet_anything(const Ray* ray) {
-    const float length = max_abs3(ray->direction);
-    return isfinite(dot3(ray->direction, (float3)(1.0f))) && isfinite(dot3(ray->origin, (float3)(1.0f))) &&
-           length >= SAHL_SHORTEST_DIRECTION && length <= SAHL_LARGEST_COORDINATE &&
-           max_abs3(ray->origin) <= SAHL_LARGEST_COORDINATE;
 }
 
 /// Brings the hits of `state`'s range into `state`: the first one, or with any_hit what kinds of

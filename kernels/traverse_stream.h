@@ -15,12 +15,15 @@
 #include "kernels/stream_ray.h"
 #include "kernels/traverse_scalar.h"
 
-// More hide more of what each waits for, but have to fit into the nearest cache.
+// More rays in flight hide more of what each waits for, but all have to fit into the nearest cache.
 #ifdef SAHL_AVX512
 #define SAHL_STREAM_WIDTH 32u
 #else
 #define SAHL_STREAM_WIDTH 20u
 #endif
+
+SAHL_STATIC_ASSERT(SAHL_STREAM_RAYS % SAHL_LANES == 0u && SAHL_SHADOW_RAYS % SAHL_LANES == 0u,
+                   "rays are prepared SAHL_LANES at a time");
 
 // Ends of stacks: of the ray's, and of an instance's part of it. They look like leaves.
 #define SAHL_CHILD_END 0xffffffffu
@@ -61,12 +64,12 @@ static inline void drop_hidden(StreamRay* ray) {
 
 /// The rays of a source that have not set out yet.
 typedef struct {
-    StreamRay* prepared[SAHL_LANES];  // rays next - next % SAHL_LANES on, and where those of them that have
-                                      // set out left place
+    // From next % SAHL_LANES on, unless that is 0, rays that are prepared; the others are free.
+    StreamRay* places[SAHL_LANES];
     uint next, end;
 } WaitingRays;
 
-/// Has the next ray of the source set out on the stack of one that is done, whose place another may take.
+/// Has the next ray of the source set out on the stack of one that is done, whose place becomes free.
 /// Returns 0 if there is none.
 static inline StreamRay* start_ray(const Bvh* bvh, const RaySource* source, WaitingRays* waiting,
                                    StreamRay* done, bool any_hit) {
@@ -75,10 +78,10 @@ static inline StreamRay* start_ray(const Bvh* bvh, const RaySource* source, Wait
     }
     const uint k = waiting->next % SAHL_LANES;
     if (k == 0u) {
-        prepare_rays(source, waiting->next, bvh->extent, waiting->prepared, any_hit);
+        prepare_rays(source, waiting->next, bvh->extent, waiting->places, any_hit);
     }
-    StreamRay* ray = waiting->prepared[k];
-    waiting->prepared[k] = done;
+    StreamRay* ray = waiting->places[k];
+    waiting->places[k] = done;
     ++waiting->next;
     ray->bottom = done->bottom;
     ray->top = ray->bottom;
@@ -175,7 +178,7 @@ SAHL_INLINE void trace_stream(const Bvh* bvh, const RaySource* source, uint firs
     waiting.next = first;
     waiting.end = end;
     for (uint k = 0; k < SAHL_LANES; ++k) {
-        waiting.prepared[k] = places + SAHL_STREAM_WIDTH + k;
+        waiting.places[k] = places + SAHL_STREAM_WIDTH + k;
     }
     StepList at_node, at_leaf;
     at_node.count = 0u;

@@ -48,6 +48,22 @@ void wait_for_file(const fs::path& path) {
     REQUIRE(fs::exists(path));
 }
 
+/// Waits until the program has taken notice of SIGINT: its thread for signals, which alone lets them through
+/// from then on, sleeps.
+void wait_for_notice(const Process& process) {
+    constexpr std::uint64_t sigint = 1U << (SIGINT - 1);
+    REQUIRE(comes_true([&] {
+        std::error_code gone;
+        for (const auto& task : fs::directory_iterator(fmt::format("/proc/{}/task", process.id()), gone)) {
+            const std::string status = content_of(task.path() / "status");
+            const std::size_t blocked = status.find("SigBlk:\t");
+            if (blocked == std::string::npos || !contains(status, "State:\tS")) continue;
+            if ((std::stoull(status.substr(blocked + 8), nullptr, 16) & sigint) == 0) return true;
+        }
+        return false;
+    }));
+}
+
 void make_fifo(const fs::path& path) { REQUIRE(::mkfifo(path.c_str(), 0600) == 0); }
 
 /// All that one writer puts in, who may come later.
@@ -205,9 +221,11 @@ TEST_CASE("interruption: the images of a series that are written stay, no other 
         workplace.render({"--depth", "0,1,2", "-o", "d{depth}.png", "-o", "f{depth}.png", "--json"});
     wait_for_file(workplace.images / "d0.png");
     process.send_signal(SIGINT);
+    wait_for_notice(process);
     CHECK(read_fifo(workplace.images / "f0.png") == content_of(workplace.images / "d0.png"));
     const ProcessResult result = process.finish();
     CHECK(result.status == 128 + SIGINT);
+    INFO(result.err);
     CHECK(contains(result.err, "1 of 3 images are written"));
     CHECK(workplace.images.entries() == 2);
     const std::vector<nlohmann::json> events = json_lines(result.out);

@@ -27,6 +27,19 @@ kernel void pixels(const uint width, const uint height, global uint2* out, const
         out[i] = (uint2)(place.left + place.column, place.top + place.row);
     }
 }
+// Of samples first.. of a wave with one a pixel: where they are, and where pixel_place() has their pixels.
+kernel void eight_together(const uint width, const uint height, const uint first, global uint2* out,
+                   global uint2* wanted, const uint count) {
+    const WaveConstants wave = {.count = count, .spp = 1, .crop_width = width, .crop_height = height, .samples = 1};
+    TEST_FOR_EACH_GROUP(i, count) {
+        const CropPixels pixels = crop_pixels(&wave, first, i);
+        for (uint k = 0; k < SAHL_LANES && i + k < count; ++k) {
+            const PixelPlace place = pixel_place(first + i + k, width, height);
+            out[i + k] = (uint2)(((const uint*)&pixels.x)[k], ((const uint*)&pixels.y)[k]);
+            wanted[i + k] = (uint2)(place.left + place.column, place.top + place.row);
+        }
+    }
+}
 )";
 
 /// The rays that there has to be room for, generate's last parameter: groups of lanes are written whole.
@@ -53,6 +66,22 @@ TEST_CASE("the order of pixels visits each pixel of a crop once, in strips of ei
             REQUIRE(order[i][1] / 8 == i / (std::size_t{8} * width));
         }
         CHECK(std::count(visits.begin(), visits.end(), 1) == static_cast<std::ptrdiff_t>(count));
+    }
+}
+
+TEST_CASE("eight samples together are in the pixels that each has alone") {
+    KernelRunner runner(kKernels);
+    const std::vector<Pixel> sizes{{4, 8},   {13, 1},   {17, 13}, {8, 8},   {5, 7},
+                                   {3, 100}, {1000, 3}, {64, 9},  {12, 10}, {640, 31}};
+    for (const auto& [width, height] : sizes) {
+        for (const std::uint32_t first : {0U, 1U, 3U, 4U, 5U, 8U, 12U}) {
+            CAPTURE(width, height, first);
+            const std::size_t count = std::size_t{width} * height - first;
+            Buffer out(runner.device(), count * sizeof(Pixel), "pixels");
+            Buffer wanted(runner.device(), count * sizeof(Pixel), "pixels one by one");
+            runner.run("eight_together", count, width, height, first, out, wanted);
+            CHECK(KernelRunner::download<Pixel>(out, count) == KernelRunner::download<Pixel>(wanted, count));
+        }
     }
 }
 

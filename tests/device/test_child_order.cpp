@@ -24,7 +24,6 @@ kernel void order(const global BvhNode* nodes, global uint* counts, global uint*
             leave[s] = i >> s & 1u ? enter[s] : 0.0f;
         }
         WaitingChild stack[9];
-        stack[0].child = 7u;
         counts[i] = (uint)(push_children(nodes + i, vload8(0, enter), vload8(0, leave), &test, stack + 1) - (stack + 1));
         for (uint k = 0; k < counts[i]; ++k) {
             children[8u * i + k] = stack[1u + k].child;

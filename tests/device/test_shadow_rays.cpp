@@ -182,7 +182,9 @@ TEST_CASE("shadow rays: batches of any size, points without lamps, and lights th
     const DeviceScene scene = tracer.upload(soup.scene);
     const std::vector<TestLitPoint> all = lit_points(random, soup, 700);
     const std::vector<vec3> alone = tracer.arriving(scene, all, one_channel_each(all.size()));
-    for (const std::size_t count : {0U, 1U, 3U, 17U, 63U, 64U, 65U, 127U, 128U, 129U, 1023U, 1025U}) {
+    for (const std::size_t count :
+         {0U,  1U,  3U,  7U,  8U,  9U,   17U,  20U,  21U,  28U,  29U,  32U,   33U,
+          40U, 41U, 63U, 64U, 65U, 127U, 128U, 129U, 255U, 256U, 257U, 1023U, 1025U}) {
         CAPTURE(count);
         std::vector<TestLitPoint> points(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
         std::vector<vec3> brought = one_channel_each(count);

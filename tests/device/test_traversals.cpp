@@ -178,7 +178,8 @@ TEST_CASE("batches of any size: each ray is traced, and nothing behind the last"
     const std::vector<TestRay> rays = ray_sets(random, soup, 2049)[0].rays;
     const std::vector<TestHit> wanted = tracer.brute_force(scene, rays);
     for (const std::ptrdiff_t count :
-         {0, 1, 3, 15, 16, 17, 63, 64, 65, 127, 128, 129, 255, 256, 257, 1023, 1024, 1025, 2047, 2049}) {
+         {0,  1,  3,  7,  8,  9,  15,  16,  17,  19,  20,  21,  27,   28,   29,   31,   32,  33,
+          39, 40, 41, 63, 64, 65, 127, 128, 129, 255, 256, 257, 1023, 1024, 1025, 2047, 2049}) {
         CAPTURE(count);
         const std::vector<TestRay> batch(rays.begin(), rays.begin() + count);
         const std::vector<TestHit> hits = tracer.intersect(scene, batch);
