@@ -55,17 +55,6 @@ static inline float8 planes_at(const global BvhNode* node, uint offset) {
     return *(const global float8*)((const global uchar*)node + offset);
 }
 
-/// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
-#define SAHL_DEFINE_FINITE_INVERSE(FLOAT, INT)                                           \
-    SAHL_OVERLOAD FLOAT finite_inverse(FLOAT d) {                                        \
-        const FLOAT magnitude = fabs(d);                                                 \
-        const FLOAT inverse = 1.0f / (magnitude < 1e-18f ? (FLOAT)(1e-18f) : magnitude); \
-        return as_##FLOAT(as_##INT(inverse) | (as_##INT(d) & (int)0x80000000));          \
-    }
-SAHL_DEFINE_FINITE_INVERSE(float4, int4)
-SAHL_DEFINE_FINITE_INVERSE(float8, int8)
-SAHL_DEFINE_FINITE_INVERSE(float16, int16)
-
 static inline RayBoxTest ray_box_test(float3 origin, float3 direction, float extent) {
     RayBoxTest test;
     const float4 o = (float4)(origin, 0.0f);

@@ -117,11 +117,6 @@ SAHL_OVERLOAD void cross_cones(const ObjectRays* r, Floats slope, Floats* enter,
     *leave = r->shift + roots.leave;
 }
 
-/// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
-SAHL_OVERLOAD Floats finite_inverses(Floats d) {
-    return 1.0f / select(d, copysign((Floats)(1e-18f), d), fabs(d) < 1e-18f);
-}
-
 /// Through the solids that cones and caps enclose: where rays are inside of both the cone and
 /// 0 <= z <= 1, in one piece, so that nothing leaks where a cap meets the side. *enter is NaN where
 /// there is nothing.
@@ -142,7 +137,7 @@ SAHL_OVERLOAD void cross_solid_cones(const ObjectRays* r, Floats slope, Floats* 
     first = select(first, beside, along);
     last = select(last, (Floats)(INFINITY), along);
 
-    Floats inverse = finite_inverses(r->dz);
+    Floats inverse = finite_inverse(r->dz);
     Floats bottom = -r->pz * inverse, top = (1.0f - r->pz) * inverse;
     Floats inside = SAHL_MAX(first, SAHL_MIN(bottom, top));
     Floats outside = SAHL_MIN(last, SAHL_MAX(bottom, top));
@@ -161,7 +156,7 @@ SAHL_OVERLOAD Floats slab_half(Floats p, Floats d, Floats inverse) {
 
 /// Through boxes; *enter is NaN where rays miss them.
 SAHL_OVERLOAD void cross_boxes(const ObjectRays* r, Floats* enter, Floats* leave) {
-    Floats ix = finite_inverses(r->dx), iy = finite_inverses(r->dy), iz = finite_inverses(r->dz);
+    Floats ix = finite_inverse(r->dx), iy = finite_inverse(r->dy), iz = finite_inverse(r->dz);
     // From the slab's middle to its planes and back.
     Floats x = -r->px * ix, y = -r->py * iy, z = -r->pz * iz;
     Floats half_x = slab_half(r->px, r->dx, ix), half_y = slab_half(r->py, r->dy, iy);

@@ -33,4 +33,15 @@ static inline float4 difference_of_products(float4 a, float4 b, float4 c, float4
     return fma(a, b, -cd) + error;
 }
 
+/// 1/d, with ±1e18 for components that are (nearly) 0: 0·inf would be NaN.
+#define SAHL_DEFINE_FINITE_INVERSE(FLOAT, INT)                                           \
+    static inline __attribute__((overloadable)) FLOAT finite_inverse(FLOAT d) {          \
+        const FLOAT magnitude = fabs(d);                                                 \
+        const FLOAT inverse = 1.0f / (magnitude < 1e-18f ? (FLOAT)(1e-18f) : magnitude); \
+        return as_##FLOAT(as_##INT(inverse) | (as_##INT(d) & (int)0x80000000));          \
+    }
+SAHL_DEFINE_FINITE_INVERSE(float4, int4)
+SAHL_DEFINE_FINITE_INVERSE(float8, int8)
+SAHL_DEFINE_FINITE_INVERSE(float16, int16)
+
 #endif
