@@ -53,7 +53,8 @@ ExitCode explain(const ExplainOptions& options, const CommonOptions& common) {
     Device device(device_options);
     take_driver_failures();
     device.memory().set_limit(options.render.max_memory.value_or(physical_memory_bytes()));
-    Renderer renderer(device, scene, {}, options.render.build_quality);
+    Renderer renderer(device, scene, {}, options.render.build_quality,
+                      compilation_for(static_cast<std::uint64_t>(sample_count(settings))));
     const ExplainedPixel pixel{scene,           options.render,
                                settings,        options.pixel.x,
                                options.pixel.y, renderer.explain(settings, options.pixel.x, options.pixel.y)};

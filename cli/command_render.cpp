@@ -168,7 +168,8 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
         return ExitCode::ok;
     }
 
-    Renderer renderer(device, scene, request, options.build_quality);
+    const Compilation compilation = compilation_for(request.samples * job.depths.size());
+    Renderer renderer(device, scene, request, options.build_quality, compilation);
     scene = Scene();  // the renderer has its own
     const MemoryPlan& plan = renderer.memory_plan();
     const BvhStatistics& bvh = renderer.bvh_statistics();

@@ -35,6 +35,15 @@ enum class Traversal : std::uint8_t {
     stream,  ///< single rays in turn, on CPUs: rays that go any way
 };
 
+/// How long a compiler may take.
+enum class Compilation : std::uint8_t {
+    optimized,
+    /// For what is done before optimized kernels would be compiled: those if the program cache has them,
+    /// else, with PoCL, kernels that are not optimized: compiled in half the time, they take four to eight
+    /// times as long, to the same bits.
+    quick,
+};
+
 /// As in the kernels' names.
 const char* name_of(Traversal traversal);
 

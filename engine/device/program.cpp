@@ -25,6 +25,7 @@ struct Program::Impl {
     Device& device;
     std::string key;  ///< in the program cache
     cl::Program program{};
+    bool optimized = true;
     bool from_cache = false;
     std::set<std::string> cached{};    ///< kernels whose compiled code is in the cache
     std::set<std::string> launched{};  ///< kernels that have been compiled for this device
@@ -120,6 +121,7 @@ cl::Program build_from_source(Device& device, const KernelSource& source, const 
 }
 
 std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source, const std::string& more,
+                                     Compilation compilation = Compilation::optimized,
                                      const std::set<std::string>& beside = {}) {
     const HostStep step("compile");
     // Without warnings, whose number PoCL prints: wide vectors make hundreds on a processor that lacks them.
@@ -128,14 +130,21 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
         if (!option.empty()) options += " " + option;
     }
     std::shared_ptr<Program::Impl> impl(new Program::Impl{device, cache_key(device, source, options)});
-    const std::optional<CachedProgram> cached = load_program(impl->key);
+    std::optional<CachedProgram> cached = load_program(impl->key);
+    if (compilation == Compilation::quick && !cached && device.info().is_pocl) {
+        options += " -cl-opt-disable";
+        impl->optimized = false;
+        impl->key = cache_key(device, source, options);
+        cached = load_program(impl->key);
+    }
     const auto from_source = [&] { impl->program = build_from_source(device, source, options); };
     if (device.info().is_pocl) {
         const bool unpacked = cached && unpack_compiled(impl->key, cached->binary);
         const bool compiled = build_watched(impl->key, from_source);
         impl->from_cache = unpacked && !compiled;
         if (compiled && !beside.empty() && device.compiles_beside()) {
-            impl->helper = CompileHelper::start(device, impl->key, pack_compiled(impl->key).value_or(""));
+            impl->helper =
+                CompileHelper::start(device, compilation, impl->key, pack_compiled(impl->key).value_or(""));
             impl->beside = beside;
         }
     } else {
@@ -186,8 +195,8 @@ void Program::Impl::before_first_launch(const std::string& kernel) {
 }
 
 Program::Program(Device& device, const std::vector<std::string>& sources, const std::string& options,
-                 const std::set<std::string>& beside)
-    : impl_(build(device, expand_files(sources), options, beside)) {}
+                 Compilation compilation, const std::set<std::string>& beside)
+    : impl_(build(device, expand_files(sources), options, compilation, beside)) {}
 
 Program::Program(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
@@ -215,6 +224,8 @@ std::optional<std::string> Program::compiled_files() {
 }
 
 bool Program::from_cache() const { return impl_->from_cache; }
+
+bool Program::is_optimized() const { return impl_->optimized; }
 
 bool Program::passed_self_test() const { return impl_->tested; }
 

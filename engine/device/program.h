@@ -70,11 +70,11 @@ class Program {
 public:
     /// `sources`: file names below kernels/, e.g. {"generate.cl", "shade.cl"}.
     /// `options`: further compiler options, e.g. "-DNAME=1".
-    /// `beside`: kernels that a CompileHelper may compile, if the device has one; they are waited for at
-    /// their first launch.
-    /// Throws Error(device) with device, options, log and the source lines the log speaks of.
+    /// `beside`: kernels that a CompileHelper may compile, if the device has one; they are waited
+    /// for at their first launch. Throws Error(device) with device, options, log and the source lines the log
+    /// speaks of.
     Program(Device& device, const std::vector<std::string>& sources, const std::string& options = "",
-            const std::set<std::string>& beside = {});
+            Compilation compilation = Compilation::optimized, const std::set<std::string>& beside = {});
     /// The same from a source text (with includes of kernels/ files), for tests.
     static Program from_text(Device& device, const std::string& text, const std::string& options = "");
     ~Program();
@@ -94,6 +94,9 @@ public:
 
     /// Whether the program came from the cache.
     bool from_cache() const;
+
+    /// Whether its kernels are optimized, as they may not be if quick ones were asked for.
+    bool is_optimized() const;
 
     /// Whether its kernels, compiled as they are here, have passed the self-test: in this process or, as
     /// the program cache says, in an earlier one.

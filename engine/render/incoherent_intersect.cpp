@@ -25,7 +25,7 @@ IncoherentIntersect::IncoherentIntersect(Device& device, Program& program, Wavef
 
 TracingKernel& IncoherentIntersect::kernel_for(std::uint32_t rays) {
     rays_ += rays;
-    if (!kernel_ && rays_ >= rays_worth_building) build(false);
+    if (!kernel_ && rays_ >= rays_worth_building && program_of_others_.is_optimized()) build(false);
     return kernel_ ? *kernel_ : others_.intersect;
 }
 

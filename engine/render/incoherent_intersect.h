@@ -21,8 +21,9 @@ public:
 
     void begin_image() { rays_ = 0; }
 
-    /// To intersect `rays` rays of the image by: as long as they are too few, the kernel of the others. Tests
-    /// the kernel before its first use. Throws as Program and test_before_first_use.
+    /// To intersect `rays` rays of the image by: as long as they are too few, or where the others are not
+    /// optimized either, the kernel of the others. Tests the kernel before its first use. Throws as Program
+    /// and test_before_first_use.
     TracingKernel& kernel_for(std::uint32_t rays);
 
     /// Builds it, if there is one, without waiting for rays; `counting`: one that counts visits and is not

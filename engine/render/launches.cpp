@@ -83,15 +83,15 @@ std::vector<std::string> wavefront_sources(Traversal traversal) {
             traversing("shadow", traversal) + ".cl", "compact.cl"};
 }
 
-Program build_wavefront_program(Device& device) {
+Program build_wavefront_program(Device& device, Compilation compilation) {
     // About half of the work, and what is needed last.
     const std::set<std::string> beside{traversing("shadow", device.traversal()), "count_children",
                                        "sum_children", "compact"};
-    return {device, wavefront_sources(device.traversal()), "", beside};
+    return {device, wavefront_sources(device.traversal()), "", compilation, beside};
 }
 
-Program build_counting_program(Device& device, Traversal traversal) {
-    return {device, wavefront_sources(traversal), counting_option};
+Program build_counting_program(Device& device, Traversal traversal, Compilation compilation) {
+    return {device, wavefront_sources(traversal), counting_option, compilation};
 }
 
 std::vector<std::string> incoherent_sources(Traversal traversal) {

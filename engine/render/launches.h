@@ -19,11 +19,12 @@ class IncoherentIntersect;
 std::vector<std::string> wavefront_sources(Traversal traversal);
 
 /// Of which WavefrontKernels are made, with the device's way of traversal.
-Program build_wavefront_program(Device& device);
+Program build_wavefront_program(Device& device, Compilation compilation = Compilation::optimized);
 
 /// The same with kernels that count visits (engine/render/visits.h) and have to be launched with a
 /// VisitCounter.
-Program build_counting_program(Device& device, Traversal traversal);
+Program build_counting_program(Device& device, Traversal traversal,
+                               Compilation compilation = Compilation::optimized);
 
 /// The file of kernels/ that the kernel for incoherent batches is in, and a program of it, which counts or
 /// not.

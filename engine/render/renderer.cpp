@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
+#include "engine/core/log.h"
 #include "engine/render/camera_constants.h"
 #include "engine/render/explain.h"
 #include "engine/render/incoherent_intersect.h"
@@ -44,13 +45,20 @@ std::uint64_t pixel_count(const Crop& crop) {
 
 }  // namespace
 
+Compilation compilation_for(std::uint64_t samples) {
+    return samples <= RenderSettings().ray_budget ? Compilation::quick : Compilation::optimized;
+}
+
 struct Renderer::Impl {
-    Impl(Device& on, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
+    Impl(Device& on, const Scene& scene, const MemoryRequest& job, BuildQuality quality, Compilation how)
         : device(on),
+          compilation(how),
           cameras(scene.cameras),
-          program(build_wavefront_program(on)),
+          program(build_wavefront_program(on, how)),
           kernels(on.traversal(), program),
           incoherent(on, program, kernels) {
+        if (!program.is_optimized())
+            log_debug("quick kernels, which take less time to compile; 'sahl warm' compiles optimized ones");
         test_before_first_use(on, program, kernels);
         device_scene = make_device_scene(on, scene, job, quality);
     }
@@ -68,7 +76,7 @@ struct Renderer::Impl {
                        const std::stop_token& stop) {
         const Crop crop = crop_of(settings);
         const std::uint64_t samples = pixel_count(crop) * std::uint64_t(samples_of(settings).count());
-        Program counting = build_counting_program(device, traversal);
+        Program counting = build_counting_program(device, traversal, compilation);
         WavefrontKernels counting_kernels(traversal, counting);
         IncoherentIntersect counting_incoherent(device, counting, counting_kernels);
         const bool by_batch = traversal == device.traversal() && incoherent.is_built();
@@ -100,7 +108,7 @@ struct Renderer::Impl {
         const Crop crop = crop_of(settings);
         RayQueues queues(device, batch_size(settings, pixel_count(crop)), 0, 0);
         Wavefront wavefront{device, kernels, device_scene, queues};
-        if (!aov_program) aov_program.emplace(build_aov_program(device));
+        if (!aov_program) aov_program.emplace(build_aov_program(device, compilation));
         Kernel describing = aov_program->kernel("describe");
         test_before_first_use(device, *aov_program, describing, kernels);
         std::vector<AovImage> images =
@@ -111,6 +119,7 @@ struct Renderer::Impl {
     }
 
     Device& device;
+    Compilation compilation;
     std::vector<Camera> cameras;
     Program program;
     WavefrontKernels kernels;
@@ -119,8 +128,9 @@ struct Renderer::Impl {
     std::optional<Program> aov_program{};
 };
 
-Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job, BuildQuality quality)
-    : impl_(std::make_unique<Impl>(device, scene, job, quality)) {}
+Renderer::Renderer(Device& device, const Scene& scene, const MemoryRequest& job, BuildQuality quality,
+                   Compilation compilation)
+    : impl_(std::make_unique<Impl>(device, scene, job, quality, compilation)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 

@@ -10,6 +10,7 @@
 
 #include "engine/accel/bvh.h"
 #include "engine/device/device.h"
+#include "engine/device/program.h"
 #include "engine/film/aov.h"
 #include "engine/film/film.h"
 #include "engine/render/explanation.h"
@@ -44,6 +45,10 @@ struct Checkpoints {
     std::function<void(std::uint64_t samples)> save{};
 };
 
+/// For the kernels of a job of so many camera samples in all: those of one batch are not worth optimizing
+/// for.
+Compilation compilation_for(std::uint64_t samples);
+
 /// A scene made ready for a device: lowered, its BVH built, uploaded, kernels compiled.
 class Renderer {
 public:
@@ -51,7 +56,7 @@ public:
     /// bounds), Error(device) from below, and Error(memory) naming what would be enough when the scene and
     /// `job` do not fit within the limit of the device's accountant. `device` must outlive the renderer.
     Renderer(Device& device, const Scene& scene, const MemoryRequest& job = {},
-             BuildQuality quality = BuildQuality::high);
+             BuildQuality quality = BuildQuality::high, Compilation compilation = Compilation::optimized);
     ~Renderer();
     Renderer(Renderer&&) noexcept;
 

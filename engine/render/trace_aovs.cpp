@@ -61,7 +61,9 @@ std::size_t aov_queue_bytes(std::uint32_t rays) {
            Buffer::footprint(id_bytes(capacity));
 }
 
-Program build_aov_program(Device& device) { return {device, {"aov.cl"}}; }
+Program build_aov_program(Device& device, Compilation compilation) {
+    return {device, {"aov.cl"}, "", compilation};
+}
 
 std::vector<AovImage> trace_aovs(Wavefront& wavefront, Kernel& describe,
                                  const device::CameraConstants& camera, const RenderSettings& settings,

@@ -11,7 +11,7 @@
 namespace sahl {
 
 /// Its kernel "describe" turns hits into AOVs.
-Program build_aov_program(Device& device);
+Program build_aov_program(Device& device, Compilation compilation = Compilation::optimized);
 
 /// Device memory while AOVs are traced in batches of `rays`.
 std::size_t aov_queue_bytes(std::uint32_t rays);

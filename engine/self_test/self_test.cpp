@@ -13,7 +13,6 @@
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
 #include "engine/core/log.h"
-#include "engine/device/compile_helper.h"
 #include "engine/self_test/every_feature.h"
 #include "engine/self_test/first_use.h"
 #include "engine/self_test/kernel_tests.h"
@@ -181,11 +180,11 @@ void test_before_first_use(Device& device, Program& program, WavefrontKernels& k
     conclude(device, program, test_wavefront(bench, test_waves()), start);
 }
 
-void compile_for_another_process(const DeviceOptions& options) {
+void compile_for_another_process(const CompileOrder& order) {
     std::optional<std::string> compiled;
     try {
-        Device device(options);
-        Program program = build_wavefront_program(device);
+        Device device(order.device);
+        Program program = build_wavefront_program(device, order.compilation);
         WavefrontKernels kernels(device.traversal(), program);
         Bench bench(device, kernels);
         // A hit of which nothing becomes: PoCL compiles what is launched, in this order.

@@ -76,6 +76,28 @@ TEST_CASE("first start: kernels that another process compiles are tested, counte
     CHECK(images[0] == images[1]);
 }
 
+TEST_CASE("first start: a small image has quick kernels, unless there are optimized ones: the same bits",
+          "[cli]") {
+    const FirstStart start;
+    const auto render = [&](const char* size) {
+        const ProcessResult result = start.run({"render", scene_file("cli_mirrors.nff"), "-v", "--size", size,
+                                                "--aov", "Z,cost.nodes", "-o", "a.exr"});
+        INFO(result.err);
+        CHECK(result.status == 0);
+        return result.err;
+    };
+    const std::string first = render("128x96");
+    CHECK(contains(first, "quick kernels"));
+    CHECK(contains(first, "of 7 kernels are right"));
+    const std::vector<float> pixels = read_image(start.folder / "a.exr").pixels;
+    const std::string second = render("128x96");
+    CHECK(contains(second, "quick kernels"));
+    CHECK_FALSE(contains(second, "are right"));  // it is known
+    CHECK_FALSE(contains(render("256x192"), "quick kernels"));
+    CHECK_FALSE(contains(render("128x96"), "quick kernels"));
+    CHECK(read_image(start.folder / "a.exr").pixels == pixels);
+}
+
 TEST_CASE("first start: if the other process ends early, this one compiles all", "[cli]") {
     SAHL_REQUIRE_PROCESSORS
     for (const int signal :

@@ -9,6 +9,7 @@
 #include "engine/device/pocl_environment.h"
 #include "engine/device/program.h"
 #include "engine/device/program_cache.h"
+#include "kernels/device_types.h"
 #include "tests/device/test_device_support.h"
 #include "tests/support/run_process.h"
 
@@ -112,6 +113,32 @@ TEST_CASE("a second process compiles nothing that the first one did") {
     CHECK(contains(probe(true), "from_cache=1 compiled=0 result=-5 stored=0;"));
     CHECK(contains(probe(false), "from_cache=1 compiled=0 result=5 stored=0;"));
     CHECK(files_of(cache.path()).size() == 1);
+}
+
+TEST_CASE("quick kernels are those of programs that the cache does not have optimized") {
+    if (!Device().info().is_pocl) return;
+    const TemporaryFolder cache;
+    const ScopedVariable variable("SAHL_CACHE_DIR", cache.path().string());
+    Device device;
+    const auto run_as = [&](Compilation compilation, bool optimized, bool from_cache) {
+        Program program(device, {"compact.cl"}, "", compilation);
+        CHECK(program.is_optimized() == optimized);
+        CHECK(program.from_cache() == from_cache);
+        constexpr std::uint32_t blocks = 2;
+        const std::vector<std::uint32_t> reflected_and_transmitted{1, 2, 3, 4}, shadow_rays{5, 6};
+        Buffer counts(device, 2 * blocks * sizeof(std::uint32_t), "counts");
+        Buffer shadow_counts(device, blocks * sizeof(std::uint32_t), "shadow rays");
+        Buffer totals(device, SAHL_TOTALS * sizeof(std::uint32_t), "totals");
+        counts.write(std::span(reflected_and_transmitted));
+        shadow_counts.write(std::span(shadow_rays));
+        program.kernel("sum_children").launch({.work_items = 1}, counts, shadow_counts, totals, blocks);
+        CHECK(totals.map<std::uint32_t>(MapMode::read, SAHL_TOTALS)[SAHL_TOTAL_CHILDREN] == 10);
+    };
+    run_as(Compilation::quick, false, false);
+    run_as(Compilation::quick, false, true);
+    run_as(Compilation::optimized, true, false);
+    run_as(Compilation::quick, true, true);
+    run_as(Compilation::optimized, true, true);
 }
 
 TEST_CASE("damaged cache files are rebuilt and replaced") {
