@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/accel/bounds.h"
+#include "engine/core/uninitialized_vector.h"
 #include "kernels/device_types.h"
 
 namespace sahl {
@@ -47,17 +48,17 @@ enum class BuildQuality { fast, high };
 
 /// A leaf of the wide tree: one block, or an instance.
 struct BvhLeaf {
-    std::uint32_t kind = 0;
-    std::uint32_t count = 0;    ///< 1..4
-    std::uint32_t ids[4] = {};  ///< ascending
+    std::uint32_t kind;
+    std::uint32_t count;   ///< 1..4
+    std::uint32_t ids[4];  ///< ascending; behind them 0
 };
 
 /// Nodes in depth-first order, [0] the root. Leaf children carry SAHL_CHILD_LEAF, the kind, and a
 /// line offset, or an instance's number. Leaves are numbered as depth-first visits of the slots 0..7 meet
 /// them; leaf k's block starts where the blocks of leaves 0..k-1 end (block_lines()).
 struct Bvh {
-    std::vector<device::BvhNode> nodes;
-    std::vector<BvhLeaf> leaves;
+    UninitializedVector<device::BvhNode> nodes;
+    UninitializedVector<BvhLeaf> leaves;
     std::uint32_t leaf_lines = 0;  ///< size of the leaf buffer in lines of 64 bytes
     Bounds bounds{};               ///< of all primitives; zeros if there are none
     BvhStatistics statistics;

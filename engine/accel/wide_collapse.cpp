@@ -39,9 +39,23 @@ struct WideExtent {
     }
 };
 
+// What the statistics of a subtree of wide nodes are summed up from.
+struct Placed {
+    double cost = 0;  // of its nodes and leaves, by the visits of a ray that meets the root
+    std::uint64_t references = 0;
+    int depth = 0;
+
+    void add(const Placed& below) {
+        cost += below.cost;
+        references += below.references;
+        depth = std::max(depth, below.depth);
+    }
+};
+
 struct Collapse {
     BinaryTree& tree;
     Bvh& bvh;
+    double root_area;
 
     void cut(std::uint32_t subtree, std::uint32_t most, Children& children) const;
     void merge(Children& children) const;
@@ -50,8 +64,9 @@ struct Collapse {
     Bounds bounds_of(std::uint32_t subtree) const;
     void measure(std::uint32_t node) const;
     WideExtent extent_of(std::uint32_t subtree) const;
-    void place_node(std::uint32_t parent, const WideExtent& before) const;
-    std::uint32_t place_leaf(const BinaryLeaf& leaf, const WideExtent& before) const;
+    double visits(const Bounds& box) const { return root_area > 0 ? half_area(box) / root_area : 1.0; }
+    Placed place_node(std::uint32_t parent, double visits, const WideExtent& before) const;
+    const BvhLeaf& place_leaf(const BinaryLeaf& leaf, const WideExtent& before) const;
 
     // Calls work(0), ... work(size - 1) for the children of `parent`, as tasks if it is large.
     template <class Work>
@@ -132,20 +147,36 @@ Bounds Collapse::bounds_of(std::uint32_t subtree) const {
     return box.bounds();
 }
 
-std::uint32_t Collapse::place_leaf(const BinaryLeaf& leaf, const WideExtent& before) const {
+const BvhLeaf& Collapse::place_leaf(const BinaryLeaf& leaf, const WideExtent& before) const {
     BvhLeaf& block = bvh.leaves[before.below.leaves];
+    block.count = 0;
     block.kind = tree.references[leaf.begin].kind;
     const std::uint32_t end = leaf.begin + leaf.size;
     for (std::uint32_t i = leaf.begin; i < end; ++i) block.ids[block.count++] = tree.references[i].id;
     std::sort(block.ids, block.ids + block.count);
     block.count = static_cast<std::uint32_t>(std::unique(block.ids, block.ids + block.count) - block.ids);
     std::fill(block.ids + block.count, std::end(block.ids), 0U);
-    const std::uint32_t place = block.kind == SAHL_KIND_INSTANCE ? block.ids[0] : before.below.lines;
-    return SAHL_CHILD_LEAF | block.kind << SAHL_CHILD_KIND_SHIFT | place;
+    return block;
 }
 
-// Writes the wide tree of `parent` behind all that is `before` it.
-void Collapse::place_node(std::uint32_t parent, const WideExtent& before) const {
+std::uint32_t leaf_child(const BvhLeaf& leaf, const WideExtent& before) {
+    const std::uint32_t place = leaf.kind == SAHL_KIND_INSTANCE ? leaf.ids[0] : before.below.lines;
+    return SAHL_CHILD_LEAF | leaf.kind << SAHL_CHILD_KIND_SHIFT | place;
+}
+
+device::BvhNode empty_node() {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    device::BvhNode node{};
+    for (std::size_t slot = 0; slot < wide_width; ++slot) {
+        node.lo_x[slot] = node.lo_y[slot] = node.lo_z[slot] = infinity;
+        node.hi_x[slot] = node.hi_y[slot] = node.hi_z[slot] = -infinity;
+        node.child[slot] = 0xffffffffu;
+    }
+    return node;
+}
+
+// Writes the wide tree of `parent`, which a ray visits so often, behind all that is `before` it.
+Placed Collapse::place_node(std::uint32_t parent, double visits_of_parent, const WideExtent& before) const {
     const Children children = open(parent);
     std::array<Bounds, wide_width> boxes;
     for (std::size_t i = 0; i < children.size; ++i) boxes[i] = bounds_of(children.child[i]);
@@ -163,6 +194,7 @@ void Collapse::place_node(std::uint32_t parent, const WideExtent& before) const 
         before_child[child] = next;
         next.add(extent_of(children.child[child]));
     }
+    std::array<Placed, wide_width> placed;
     for_children(parent, children.size, [&](std::size_t i) {
         const std::uint32_t child = children.child[i];
         const auto slot = static_cast<std::size_t>(slot_of[i]);
@@ -172,10 +204,19 @@ void Collapse::place_node(std::uint32_t parent, const WideExtent& before) const 
         node.hi_x[slot] = boxes[i].hi[0];
         node.hi_y[slot] = boxes[i].hi[1];
         node.hi_z[slot] = boxes[i].hi[2];
-        node.child[slot] =
-            is_leaf(child) ? place_leaf(unpack_leaf(child), before_child[i]) : before_child[i].nodes;
-        if (!is_leaf(child)) place_node(child, before_child[i]);
+        if (is_leaf(child)) {
+            const BvhLeaf& leaf = place_leaf(unpack_leaf(child), before_child[i]);
+            node.child[slot] = leaf_child(leaf, before_child[i]);
+            placed[i] = {visits(boxes[i]) * block_costs[leaf.kind], leaf.count, 0};
+        } else {
+            node.child[slot] = before_child[i].nodes;
+            placed[i] = place_node(child, visits(boxes[i]), before_child[i]);
+        }
     });
+    Placed whole{visits_of_parent * node_visit_cost, 0, 0};
+    for (const Placed& below : std::span(placed).first(children.size)) whole.add(below);
+    ++whole.depth;
+    return whole;
 }
 
 }  // namespace
@@ -188,17 +229,6 @@ std::uint32_t block_lines(std::uint32_t kind) {
     return static_cast<std::uint32_t>(bytes.at(kind) / SAHL_LEAF_LINE_BYTES);
 }
 
-device::BvhNode empty_node() {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
-    device::BvhNode node{};
-    for (std::size_t slot = 0; slot < wide_width; ++slot) {
-        node.lo_x[slot] = node.lo_y[slot] = node.lo_z[slot] = infinity;
-        node.hi_x[slot] = node.hi_y[slot] = node.hi_z[slot] = -infinity;
-        node.child[slot] = 0xffffffffu;
-    }
-    return node;
-}
-
 std::uint32_t addressable_lines(std::uint64_t lines) {
     if (lines <= SAHL_CHILD_OFFSET_MASK + 1) return static_cast<std::uint32_t>(lines);
     throw Error(ExitCode::scene,
@@ -207,14 +237,33 @@ std::uint32_t addressable_lines(std::uint64_t lines) {
                     "primitives at a time");
 }
 
-void collapse(BinaryTree& tree, Bvh& bvh) {
-    const Collapse step{tree, bvh};
+Bvh empty_bvh() {
+    Bvh bvh;
+    bvh.nodes.push_back(empty_node());
+    bvh.statistics.nodes = 1;
+    bvh.statistics.depth = 1;
+    bvh.statistics.sah_cost = 1;
+    return bvh;
+}
+
+Bvh collapse(BinaryTree& tree) {
+    Bvh bvh;
+    const Collapse step{tree, bvh, half_area(tree.bounds)};
     if (!is_leaf(tree.root)) step.measure(tree.root);
     const WideExtent whole = step.extent_of(tree.root);
     bvh.leaf_lines = addressable_lines(whole.below.lines);
     bvh.nodes.resize(std::max(whole.nodes, 1u));
     bvh.leaves.resize(whole.below.leaves);
-    step.place_node(tree.root, {});
+    const Placed placed = step.place_node(tree.root, 1, {});
+    bvh.bounds = tree.bounds;
+    bvh.statistics.nodes = bvh.nodes.size();
+    bvh.statistics.leaves = bvh.leaves.size();
+    bvh.statistics.references = placed.references;
+    bvh.statistics.depth = placed.depth;
+    bvh.statistics.sah_cost = placed.cost / node_visit_cost;
+    bvh.statistics.leaf_fill =
+        static_cast<double>(placed.references) / static_cast<double>(bvh.leaves.size());
+    return bvh;
 }
 
 }  // namespace sahl

@@ -8,15 +8,15 @@
 
 namespace sahl {
 
-/// A node whose slots are all empty.
-device::BvhNode empty_node();
+/// A tree over nothing: a node whose slots are all empty.
+Bvh empty_bvh();
 
 /// `lines` of 64 bytes as the size of a leaf buffer.
 /// Throws Error(scene) if they are more than the 2^27 that a child reference can address.
 std::uint32_t addressable_lines(std::uint64_t lines);
 
-/// Sets the wide nodes and leaves of `tree`, and leaf_lines, in `bvh`: the children of a node are the cut
-/// that its plan says is best. Uses the extents in `tree`. Throws as addressable_lines.
-void collapse(BinaryTree& tree, Bvh& bvh);
+/// The wide tree of `tree`: the children of a node are the cut that its plan says is best. Uses the extents
+/// in `tree`. The statistics lack the number of primitives and the time. Throws as addressable_lines.
+Bvh collapse(BinaryTree& tree);
 
 }  // namespace sahl

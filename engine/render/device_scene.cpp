@@ -17,11 +17,11 @@ class Uploader {
 public:
     Uploader(Device& device, MemoryReservation& host) : device_(device), host_(host) {}
 
-    template <class T>
-    Buffer move(std::vector<T>& values, std::string name) {
-        const std::size_t bytes = values.size() * sizeof(T);
+    template <class Vector>
+    Buffer move(Vector& values, std::string name) {
+        const std::size_t bytes = values.size() * sizeof(typename Vector::value_type);
         Buffer buffer(device_, bytes, std::move(name));
-        buffer.write(std::span<const T>(values));
+        buffer.write(std::span(std::as_const(values)));
         values = {};
         host_.give_back(bytes);
         return buffer;

@@ -50,10 +50,9 @@ double median_tree_cost(const std::vector<BuildPrimitive>& primitives) {
     median.tree.references = primitives;
     median.tree.nodes = std::make_unique<BinaryNode[]>(primitives.size());
     median.tree.root = median.split(0, primitives.size()).root;
-    Bvh bvh;
-    collapse(median.tree, bvh);
-    bvh.bounds = empty_bounds();
-    for (const BuildPrimitive& primitive : primitives) extend(bvh.bounds, primitive.bounds);
+    median.tree.bounds = empty_bounds();
+    for (const BuildPrimitive& primitive : primitives) extend(median.tree.bounds, primitive.bounds);
+    const Bvh bvh = collapse(median.tree);
     const TreeFacts facts = walk(bvh, primitives);
     REQUIRE(facts.fault == "");
     return facts.sah_cost;
