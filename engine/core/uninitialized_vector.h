@@ -12,8 +12,8 @@ namespace sahl {
 template <class T>
 struct UninitializedAllocator : std::allocator<T> {
     template <class Other>
-    struct rebind {  // NOLINT(readability-identifier-naming): the standard's
-        using other = UninitializedAllocator<Other>;
+    struct rebind {
+        using other = UninitializedAllocator<Other>;  // NOLINT(readability-identifier-naming)
     };
 
     template <class Element>
