@@ -103,18 +103,27 @@ static inline floatv gather(const LanePlaces* at, uint k) {
                     at->of[6][k], at->of[7][k]);
 }
 
-static inline floatv3 gather3(const LanePlaces* at, uint k) {
-    return (floatv3){gather(at, k), gather(at, k + 1u), gather(at, k + 2u)};
+/// Numbers k to k + 7 from each place on.
+static inline void gather8(const LanePlaces* at, uint k, floatv* numbers) {
+#pragma unroll
+    for (uint lane = 0; lane < SAHL_LANES; ++lane) {
+        numbers[lane] = vload8(0, at->of[lane] + k);
+    }
+    transpose8(numbers);
 }
 
-/// A number in two floats, the second being what the first lacks.
-static inline realv gather_real(const LanePlaces* at, uint k) {
-    return convert_realv(gather(at, k)) + convert_realv(gather(at, k + 1u));
+static inline floatv3 vectors_of(const floatv* numbers) {
+    return (floatv3){numbers[0], numbers[1], numbers[2]};
+}
+
+/// Numbers in two floats, the second being what the first lacks.
+static inline realv reals_of(const floatv* numbers) {
+    return convert_realv(numbers[0]) + convert_realv(numbers[1]);
 }
 
 /// Three floats and, behind them, the three that they lack.
-static inline realv3 gather3_real(const LanePlaces* at, uint k) {
-    return add(widen(gather3(at, k)), widen(gather3(at, k + 3u)));
+static inline realv3 real_vectors_of(const floatv* numbers) {
+    return add(widen(vectors_of(numbers)), widen(vectors_of(numbers + 3)));
 }
 
 #endif

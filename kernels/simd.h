@@ -164,28 +164,32 @@ static inline uint mask16_le(float16 a, float16 b) {
 
 static inline uint mask16_ge(float16 a, float16 b) { return mask16_le(b, a); }
 
-/// Rows of an 8 x 8 square become its columns, in place.
-SAHL_INLINE void transpose8(float8* rows) {
-    float8 pairs[8], quarters[8];
+/// Rows of two 4 x 4 squares, one beside the other, become their columns, in place.
+SAHL_INLINE void transpose4(float8* rows) {
+    float8 pairs[4];
 #pragma unroll
-    for (uint k = 0; k < 8u; k += 2u) {
+    for (uint k = 0; k < 4u; k += 2u) {
         const float8 a = rows[k], b = rows[k + 1u];
         pairs[k] = (float8)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5);
         pairs[k + 1u] = (float8)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7);
     }
 #pragma unroll
-    for (uint k = 0; k < 8u; k += 4u) {
-#pragma unroll
-        for (uint odd = 0; odd < 2u; ++odd) {
-            const float8 a = pairs[k + odd], b = pairs[k + 2u + odd];
-            quarters[k + 2u * odd] = (float8)(a.s01, b.s01, a.s45, b.s45);
-            quarters[k + 2u * odd + 1u] = (float8)(a.s23, b.s23, a.s67, b.s67);
-        }
+    for (uint odd = 0; odd < 2u; ++odd) {
+        const float8 a = pairs[odd], b = pairs[2u + odd];
+        rows[2u * odd] = (float8)(a.s01, b.s01, a.s45, b.s45);
+        rows[2u * odd + 1u] = (float8)(a.s23, b.s23, a.s67, b.s67);
     }
+}
+
+/// Rows of an 8 x 8 square become its columns, in place.
+SAHL_INLINE void transpose8(float8* rows) {
+    transpose4(rows);
+    transpose4(rows + 4);
 #pragma unroll
     for (uint k = 0; k < 4u; ++k) {
-        rows[k] = (float8)(quarters[k].lo, quarters[k + 4u].lo);
-        rows[k + 4u] = (float8)(quarters[k].hi, quarters[k + 4u].hi);
+        const float8 upper = rows[k], lower = rows[k + 4u];
+        rows[k] = (float8)(upper.lo, lower.lo);
+        rows[k + 4u] = (float8)(upper.hi, lower.hi);
     }
 }
 

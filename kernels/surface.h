@@ -43,15 +43,16 @@ static inline floatv3 offset_origins(floatv3 position, floatv3 offset, floatv3 d
     return where(dotv(offset, direction) < 0.0f, sub(position, offset), add(position, offset));
 }
 
-/// Vectors in object space by the row-major matrices at m.
-static inline realv3 object_vectors(const LanePlaces* m, realv3 v) {
-    return (realv3){dotv(gather3_real(m, 0), v), dotv(gather3_real(m, 6), v), dotv(gather3_real(m, 12), v)};
+/// Vectors in object space by the row-major matrices m.
+static inline realv3 object_vectors(const floatv* m, realv3 v) {
+    return (realv3){dotv(real_vectors_of(m), v), dotv(real_vectors_of(m + 6), v),
+                    dotv(real_vectors_of(m + 12), v)};
 }
 
 /// Normals of object space in the world: times the transpose of object-from-world.
-static inline realv3 world_normals(const LanePlaces* m, realv3 n) {
-    return normalizev(
-        add(add(mul(gather3_real(m, 0), n.x), mul(gather3_real(m, 6), n.y)), mul(gather3_real(m, 12), n.z)));
+static inline realv3 world_normals(const floatv* m, realv3 n) {
+    return normalizev(add(add(mul(real_vectors_of(m), n.x), mul(real_vectors_of(m + 6), n.y)),
+                          mul(real_vectors_of(m + 12), n.z)));
 }
 
 /// The roots of a x² + 2 b x + c next to 0; where rounding has made them complex, the vertex.
@@ -73,12 +74,18 @@ static inline Surfaces flat_surfaces(realv3 origin, realv3 direction, realv3 nor
 /// Of triangles at `data`; those of the lanes `smooth` have normals behind their vertices, at `normals`.
 static inline Surfaces triangle_surfaces(const LanePlaces* data, const LanePlaces* normals, intv smooth,
                                          realv3 origin, realv3 direction, floatv u, floatv v) {
-    floatv3 a = gather3(data, 0), b = gather3(data, 3), c = gather3(data, 6);
+    floatv corners[9];
+    gather8(data, 0, corners);
+    corners[8] = gather(data, 8);
+    floatv3 a = vectors_of(corners), b = vectors_of(corners + 3), c = vectors_of(corners + 6);
     realv3 v0 = widen(a), v1 = widen(b), v2 = widen(c);
     Surfaces s = flat_surfaces(origin, direction, normalizev(crossv(sub(v1, v0), sub(v2, v0))), v0);
     if (lane_bits(smooth) != 0u) {
-        floatv3 sum = add(mul(gather3(normals, 0), 1.0f - u - v), mul(gather3(normals, 3), u));
-        realv3 n = widen(add(sum, mul(gather3(normals, 6), v)));
+        floatv at_corners[9];
+        gather8(normals, 0, at_corners);
+        at_corners[8] = gather(normals, 8);
+        floatv3 sum = add(mul(vectors_of(at_corners), 1.0f - u - v), mul(vectors_of(at_corners + 3), u));
+        realv3 n = widen(add(sum, mul(vectors_of(at_corners + 6), v)));
         realv length2 = dotv(n, n);
         s.ns = where(smooth, where(length2 > (real)0, div(n, sqrt(length2)), s.ng), s.ns);
     }
@@ -90,17 +97,25 @@ static inline Surfaces triangle_surfaces(const LanePlaces* data, const LanePlace
 }
 
 static inline Surfaces polygon_surfaces(const LanePlaces* data, realv3 origin, realv3 direction) {
-    realv3 anchor = gather3_real(data, 6);
-    Surfaces s = flat_surfaces(origin, direction, gather3_real(data, 0), anchor);
+    floatv numbers[26];
+    gather8(data, 0, numbers);
+    gather8(data, 8, numbers + 8);
+    gather8(data, 16, numbers + 16);
+    numbers[24] = gather(data, 24);
+    numbers[25] = gather(data, 25);
+    realv3 anchor = real_vectors_of(numbers + 6);
+    Surfaces s = flat_surfaces(origin, direction, real_vectors_of(numbers), anchor);
     realv3 from_anchor = sub(add(origin, mul(direction, s.t)), anchor);
-    s.shape = (realv3){dotv(gather3_real(data, 14), from_anchor), dotv(gather3_real(data, 20), from_anchor),
-                       (realv)(0)};
+    s.shape = (realv3){dotv(real_vectors_of(numbers + 14), from_anchor),
+                       dotv(real_vectors_of(numbers + 20), from_anchor), (realv)(0)};
     return s;
 }
 
 static inline Surfaces sphere_surfaces(const LanePlaces* data, realv3 origin, realv3 direction, realv t) {
-    realv3 center = gather3_real(data, 0);
-    realv radius = gather_real(data, 6);
+    floatv numbers[8];
+    gather8(data, 0, numbers);
+    realv3 center = real_vectors_of(numbers);
+    realv radius = reals_of(numbers + 6);
     realv3 p = sub(add(origin, mul(direction, t)), center);
     realv step =
         roots_near_zero(dotv(direction, direction), dotv(p, direction), dotv(p, p) - radius * radius);
@@ -182,12 +197,21 @@ static inline uint kinds_present(uintv kind) {
            1u << kind.s6 | 1u << kind.s7;
 }
 
-/// Of shapes with an object space of their own. `solid`: lanes' numbers of the slope, where they have one.
+/// Of shapes with an object space of their own. `slopes`: where lanes have theirs, if they have one.
 static inline Surfaces object_surfaces(uintv kind, uint present, const LanePlaces* data,
                                        const LanePlaces* slopes, realv3 origin, realv3 direction, realv t) {
-    realv3 center = gather3_real(data, 18);
-    realv3 p = object_vectors(data, sub(add(origin, mul(direction, t)), center));
-    realv3 d = object_vectors(data, direction);
+    floatv numbers[24];
+    gather8(data, 0, numbers);
+    gather8(data, 8, numbers + 8);
+    gather8(data, 16, numbers + 16);
+    realv3 center = real_vectors_of(numbers + 18);
+    realv3 p = object_vectors(numbers, sub(add(origin, mul(direction, t)), center));
+    realv3 d = object_vectors(numbers, direction);
+    realv slope = (realv)(0);
+    if (present & (1u << SAHL_KIND_CONE | 1u << SAHL_KIND_SOLID_CONE)) {
+        const floatv slope_numbers[2] = {gather(slopes, 0), gather(slopes, 1)};
+        slope = reals_of(slope_numbers);
+    }
     ShapePoints points = ellipsoid_points(p, d);
     if (present & 1u << SAHL_KIND_DISC) {
         points = where_points(convert_real_maskv(kind == SAHL_KIND_DISC),
@@ -198,15 +222,14 @@ static inline Surfaces object_surfaces(uintv kind, uint present, const LanePlace
     }
     if (present & 1u << SAHL_KIND_SOLID_CONE) {
         points = where_points(convert_real_maskv(kind == SAHL_KIND_SOLID_CONE),
-                              solid_cone_points(p, d, gather_real(slopes, 0)), points);
+                              solid_cone_points(p, d, slope), points);
     }
     if (present & 1u << SAHL_KIND_CONE) {
-        points = where_points(convert_real_maskv(kind == SAHL_KIND_CONE),
-                              cone_points(p, d, gather_real(slopes, 0)), points);
+        points = where_points(convert_real_maskv(kind == SAHL_KIND_CONE), cone_points(p, d, slope), points);
     }
     Surfaces s;
     s.t = t + points.step;
-    s.ng = world_normals(data, points.normal);
+    s.ng = world_normals(numbers, points.normal);
     s.ns = s.ng;
     s.shape = add(p, mul(d, points.step));
     s.offset = max_absv(roundv(center));
@@ -223,28 +246,38 @@ static inline Surfaces where_surfaces(intv mask, Surfaces a, Surfaces b) {
     return s;
 }
 
-/// Row `row` of the instances' object_from_world at `rows`: without, and the translation.
-static inline realv3 instance_rows(const LanePlaces* rows, uint row) {
-    return add(widen(gather3(rows, 8u * row)), widen(gather3(rows, 8u * row + 4u)));
-}
-static inline realv instance_shifts(const LanePlaces* rows, uint row) {
-    return convert_realv(gather(rows, 8u * row + 3u)) + convert_realv(gather(rows, 8u * row + 7u));
+/// Instances' object_from_world.
+typedef struct {
+    realv3 rows[3];
+    realv3 translation;
+} Placements;
+
+/// Of DeviceInstances at `places`.
+static inline Placements placements(const LanePlaces* at) {
+    Placements placed;
+    realv shift[3];
+#pragma unroll
+    for (uint row = 0; row < 3u; ++row) {
+        floatv numbers[8];
+        gather8(at, 8u * row, numbers);
+        placed.rows[row] = add(widen(vectors_of(numbers)), widen(vectors_of(numbers + 4)));
+        shift[row] = convert_realv(numbers[3]) + convert_realv(numbers[7]);
+    }
+    placed.translation = (realv3){shift[0], shift[1], shift[2]};
+    return placed;
 }
 
-static inline realv3 group_from_world_vectors(const LanePlaces* rows, realv3 v) {
-    return (realv3){dotv(instance_rows(rows, 0), v), dotv(instance_rows(rows, 1), v),
-                    dotv(instance_rows(rows, 2), v)};
+static inline realv3 group_from_world_vectors(const Placements* placed, realv3 v) {
+    return (realv3){dotv(placed->rows[0], v), dotv(placed->rows[1], v), dotv(placed->rows[2], v)};
 }
 
-static inline realv3 group_from_world_points(const LanePlaces* rows, realv3 p) {
-    return add(group_from_world_vectors(rows, p),
-               (realv3){instance_shifts(rows, 0), instance_shifts(rows, 1), instance_shifts(rows, 2)});
+static inline realv3 group_from_world_points(const Placements* placed, realv3 p) {
+    return add(group_from_world_vectors(placed, p), placed->translation);
 }
 
 /// Normals of the groups in the world, of any length: times the transpose of object_from_world.
-static inline realv3 world_from_group_normals(const LanePlaces* rows, realv3 n) {
-    return add(add(mul(instance_rows(rows, 0), n.x), mul(instance_rows(rows, 1), n.y)),
-               mul(instance_rows(rows, 2), n.z));
+static inline realv3 world_from_group_normals(const Placements* placed, realv3 n) {
+    return add(add(mul(placed->rows[0], n.x), mul(placed->rows[1], n.y)), mul(placed->rows[2], n.z));
 }
 
 /// The lanes' own values where `mask` holds, elsewhere that of the first lane where it does.
@@ -252,21 +285,35 @@ static inline uintv borrowed(intv mask, uintv value) {
     return mask ? value : (uintv)(((const uint*)&value)[lowest_lane(lane_bits(mask))]);
 }
 
+/// DevicePrimitives of the lanes.
+typedef struct {
+    uintv kind, material, data, flags;
+} PrimitiveLanes;
+
+static inline PrimitiveLanes load_primitives(const global DevicePrimitive* primitives, uintv id) {
+    floatv words[4];
+#pragma unroll
+    for (uint lane = 0; lane < 4u; ++lane) {
+        const global float* low = (const global float*)(primitives + ((const uint*)&id)[lane]);
+        const global float* high = (const global float*)(primitives + ((const uint*)&id)[lane + 4u]);
+        words[lane] = (float8)(vload4(0, low), vload4(0, high));
+    }
+    transpose4(words);
+    return (PrimitiveLanes){as_uintv(words[0]), as_uintv(words[1]), as_uintv(words[2]), as_uintv(words[3])};
+}
+
 /// surfaces_at() in the space of the primitives, without the position.
 static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, realv3 origin,
                                          realv3 direction, floatv t, floatv u, floatv v) {
-#define SAHL_OF_PRIMITIVES(field)                                                                       \
-    (uintv)(p[primitive.s0].field, p[primitive.s1].field, p[primitive.s2].field, p[primitive.s3].field, \
-            p[primitive.s4].field, p[primitive.s5].field, p[primitive.s6].field, p[primitive.s7].field)
-    const global DevicePrimitive* p = shapes->primitives;
-    const uintv kind = SAHL_OF_PRIMITIVES(kind), data = SAHL_OF_PRIMITIVES(data);
+    const PrimitiveLanes of = load_primitives(shapes->primitives, primitive);
+    const uintv kind = of.kind, data = of.data;
     const uint present = kinds_present(kind);
     const realv t_real = convert_realv(t);
     Surfaces s = {};
     intv others = (intv)(-1);
     if (present & 1u << SAHL_KIND_TRIANGLE) {
         const intv these = kind == SAHL_KIND_TRIANGLE;
-        const intv smooth = these & ((SAHL_OF_PRIMITIVES(flags) & SAHL_PRIMITIVE_SMOOTH) != 0u);
+        const intv smooth = these & ((of.flags & SAHL_PRIMITIVE_SMOOTH) != 0u);
         const uintv at = borrowed(these, data);
         const LanePlaces vertices = places(shapes->shape_data, at);
         const LanePlaces normals = places(shapes->shape_data, smooth ? at + 9u : at);
@@ -295,8 +342,7 @@ static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, 
                            s);
     }
     SAHL_COUNT_LANES(shapes, surface_flop(present));
-    s.material = SAHL_OF_PRIMITIVES(material);
-#undef SAHL_OF_PRIMITIVES
+    s.material = of.material;
     return s;
 }
 
@@ -306,10 +352,12 @@ static inline Surfaces surfaces_at(const Shapes* shapes, intv hit, uintv instanc
                                    realv3 origin, realv3 direction, floatv t, floatv u, floatv v) {
     const intv placed = hit & (instance != SAHL_WORLD);
     realv3 o = origin, d = direction;
-    LanePlaces rows;
+    Placements rows;
     if (lane_bits(placed) != 0u) {
-        rows = places((const global float*)shapes->instances,
-                      (borrowed(placed, instance) - 1u) * (uint)(sizeof(DeviceInstance) / sizeof(float)));
+        const LanePlaces at =
+            places((const global float*)shapes->instances,
+                   (borrowed(placed, instance) - 1u) * (uint)(sizeof(DeviceInstance) / sizeof(float)));
+        rows = placements(&at);
         SAHL_COUNT_LANES(shapes, SAHL_PLACED_FLOP);
         o = where(placed, group_from_world_points(&rows, origin), origin);
         d = where(placed, group_from_world_vectors(&rows, direction), direction);

@@ -129,7 +129,7 @@ const std::vector<Fault> faults{
     {"shade", "texture.h",
      "colors.reflection = SAHL_TEXTURED(colors.reflection, material->reflection_texture);", ""},
     {"shade", "power.h", "1.0f / 6.0f", "1.0f / 7.0f"},
-    {"shade", "surface.h", "mul(gather3(normals, 6), v)", "mul(gather3(normals, 6), u)"},
+    {"shade", "surface.h", "mul(vectors_of(at_corners + 6), v)", "mul(vectors_of(at_corners + 6), u)"},
     {"shade", "surface.h", "smooth ? at + 9u : at", "at"},
     {"shade", "surface.h", "where_surfaces(these, sphere_surfaces(&at, origin, direction, t_real), s)",
      "sphere_surfaces(&at, origin, direction, t_real)"},
