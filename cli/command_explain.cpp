@@ -53,8 +53,11 @@ ExitCode explain(const ExplainOptions& options, const CommonOptions& common) {
     Device device(device_options);
     take_driver_failures();
     device.memory().set_limit(options.render.max_memory.value_or(physical_memory_bytes()));
+    RenderSettings pixel_settings = settings;
+    pixel_settings.crop = Crop{options.pixel.x, options.pixel.y, options.pixel.x + 1, options.pixel.y + 1};
+    const auto lights = static_cast<std::uint32_t>(scene.lights.size());
     Renderer renderer(device, scene, {}, options.render.build_quality,
-                      compilation_for(static_cast<std::uint64_t>(sample_count(settings))));
+                      compilation_for(memory_request(device, pixel_settings, lights)));
     const ExplainedPixel pixel{scene,           options.render,
                                settings,        options.pixel.x,
                                options.pixel.y, renderer.explain(settings, options.pixel.x, options.pixel.y)};

@@ -168,7 +168,7 @@ ExitCode render(const RenderOptions& options, const CommonOptions& common) {
         return ExitCode::ok;
     }
 
-    const Compilation compilation = compilation_for(request.samples * job.depths.size());
+    const Compilation compilation = compilation_for(request, job.depths.size());
     Renderer renderer(device, scene, request, options.build_quality, compilation);
     scene = Scene();  // the renderer has its own
     const MemoryPlan& plan = renderer.memory_plan();

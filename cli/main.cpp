@@ -215,7 +215,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     std::signal(SIGXFSZ, SIG_IGN);
     // Its supervisor tells it of signals.
     if (const auto socket = sahl::cli::worker_socket(argc, argv)) sahl::cli::run_batch_worker(*socket);
-    if (const auto order = sahl::take_compile_order(argc, argv)) sahl::compile_for_another_process(*order);
+    if (const auto device = sahl::take_compile_order(argc, argv)) sahl::compile_for_another_process(*device);
     sahl::cli::take_signals();
     const int status = sahl::cli::guarded_run(argc, argv);
     sahl::cli::defer_interruption();  // it is at its end: nothing to tell any more

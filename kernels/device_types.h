@@ -155,7 +155,7 @@ typedef struct {
     sahl_uint data;
     sahl_uint flags;
 } DevicePrimitive;
-SAHL_STATIC_ASSERT(sizeof(DevicePrimitive) == 16, "DevicePrimitive is 16 bytes");
+SAHL_STATIC_ASSERT(sizeof(DevicePrimitive) == 16, "DevicePrimitive is 16 bytes");  // see load_primitives()
 
 #define SAHL_MATERIAL_TWO_SIDED 1u
 #define SAHL_MATERIAL_BLINN 2u

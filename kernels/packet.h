@@ -113,13 +113,14 @@ SAHL_NOINLINE uint begin_pass(Pass* pass, uint number, uint instance, float exte
         pass->inverse_lo[k] = leastg(inverse_lo[k]);
         pass->inverse_hi[k] = greatestg(inverse_hi[k]);
         float lo = leastg(origin_lo[k]), hi = greatestg(origin_hi[k]);
-        // Outward by what covers the rounding here and of the primitives' tests (see bvh.h). A box that has
-        // grown by twice that is entered before, and left behind, where RayBoxTest has it.
-        const float e = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-20f;
-        pass->margin[k] = 2.0f * e;
+        // Outward by what covers the rounding of the primitives' tests (see bvh.h), and as much again for the
+        // rounding here: a box is entered before, and left behind, where RayBoxTest has it, where distances
+        // that a grazing ray has badly defined are kept to (keep_to_box()).
+        const float margin = (SAHL_MAX(fabs(lo), fabs(hi)) + extent) * 0x1p-19f;
+        pass->margin[k] = margin;
         bool backward = (axes->octant >> k & 1u) != 0u;
-        pass->near_origin[k] = backward ? lo - e : hi + e;
-        pass->far_origin[k] = backward ? hi + e : lo - e;
+        pass->near_origin[k] = backward ? lo - margin : hi + margin;
+        pass->far_origin[k] = backward ? hi + margin : lo - margin;
         axes->common_origin = axes->common_origin && lo == hi;
         axes->origin[k] = lo;
     }

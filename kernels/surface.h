@@ -252,7 +252,7 @@ typedef struct {
     realv3 translation;
 } Placements;
 
-/// Of DeviceInstances at `places`.
+/// Of the DeviceInstances at `at`.
 static inline Placements placements(const LanePlaces* at) {
     Placements placed;
     realv shift[3];
@@ -290,6 +290,7 @@ typedef struct {
     uintv kind, material, data, flags;
 } PrimitiveLanes;
 
+/// As words, in the order of DevicePrimitive.
 static inline PrimitiveLanes load_primitives(const global DevicePrimitive* primitives, uintv id) {
     floatv words[4];
 #pragma unroll

@@ -1,12 +1,10 @@
 #include "engine/accel/bvh.h"
 
-#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
 
 #include "engine/accel/binary_tree.h"
-#include "engine/accel/cost_model.h"
 #include "engine/accel/wide_collapse.h"
 #include "engine/core/error.h"
 

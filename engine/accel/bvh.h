@@ -46,7 +46,7 @@ struct TriangleCorners {
 /// What the time to build a tree is worth. Fast: triangles are cut beforehand, if at all, see pre_split.h.
 enum class BuildQuality { fast, high };
 
-/// A leaf of the wide tree: one block, or an instance.
+/// A leaf of the wide tree: one block, or an instance. No defaulted members: arrays of them are not cleared.
 struct BvhLeaf {
     std::uint32_t kind;
     std::uint32_t count;   ///< 1..4

@@ -65,7 +65,7 @@ struct Collapse {
     void measure(std::uint32_t node) const;
     WideExtent extent_of(std::uint32_t subtree) const;
     double visits(const Bounds& box) const { return root_area > 0 ? half_area(box) / root_area : 1.0; }
-    Placed place_node(std::uint32_t parent, double visits, const WideExtent& before) const;
+    Placed place_node(std::uint32_t parent, double visits_of_parent, const WideExtent& before) const;
     const BvhLeaf& place_leaf(const BinaryLeaf& leaf, const WideExtent& before) const;
 
     // Calls work(0), ... work(size - 1) for the children of `parent`, as tasks if it is large.

@@ -28,16 +28,7 @@ constexpr std::string_view helper_name = "sahl-compiler";  // in lists of proces
 constexpr int output_file = 3;                             // of the helper: drivers print on others
 
 // Arguments behind the name.
-enum : int {
-    of_parent = 1,
-    of_folder,
-    of_device,
-    of_group,
-    of_traversal,
-    of_compilation,
-    of_options,
-    argument_count
-};
+enum : int { of_parent = 1, of_folder, of_device, of_group, of_traversal, of_options, argument_count };
 
 bool write_all(int file, const std::string& text) {
     return PipeEnd(file).write(std::as_bytes(std::span(text)));
@@ -54,15 +45,14 @@ std::string read_all(int file) {
     }
 }
 
-std::array<std::string, argument_count> arguments_for(const Device& device, Compilation compilation) {
+std::array<std::string, argument_count> arguments_for(const Device& device, const std::string& options) {
     return {std::string(helper_name),
             std::to_string(::getpid()),
             private_temporary_folder().string(),
             std::to_string(device.info().index),
             std::to_string(device.local_size()),
             std::to_string(static_cast<int>(device.traversal())),
-            std::to_string(static_cast<int>(compilation)),
-            device.build_options()};
+            options};
 }
 
 /// A file in memory with `text`; -1 if there can be none.
@@ -88,7 +78,7 @@ void end(int) { exit_at_once(1); }
 
 }  // namespace
 
-std::unique_ptr<CompileHelper> CompileHelper::start(const Device& device, Compilation compilation,
+std::unique_ptr<CompileHelper> CompileHelper::start(const Device& device, const std::string& options,
                                                     const std::string& key, const std::string& built) {
     // As a file, which is read when there is time for it: nobody waits for a pipe to be emptied.
     const int order = file_of(key + '\0' + built);
@@ -103,7 +93,7 @@ std::unique_ptr<CompileHelper> CompileHelper::start(const Device& device, Compil
     for (const int standard : {STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_addopen(&actions, standard, "/dev/null", O_RDWR, 0);
     posix_spawn_file_actions_adddup2(&actions, pipe[1], output_file);
-    std::array<std::string, argument_count> arguments = arguments_for(device, compilation);
+    std::array<std::string, argument_count> arguments = arguments_for(device, options);
     std::array<char*, argument_count + 1> pointers{};
     for (std::size_t i = 0; i < arguments.size(); ++i) pointers[i] = arguments[i].data();
     pid_t id = -1;
@@ -147,7 +137,7 @@ std::string CompileHelper::take() {
     return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? packed : std::string();
 }
 
-std::optional<CompileOrder> take_compile_order(int argc, char** argv) {
+std::optional<DeviceOptions> take_compile_order(int argc, char** argv) {
     if (argc != argument_count || argv[0] != helper_name) return std::nullopt;
     sigset_t none;  // the other process may hold signals back
     sigemptyset(&none);
@@ -166,7 +156,7 @@ std::optional<CompileOrder> take_compile_order(int argc, char** argv) {
     const std::string key = order.c_str();
     prepare_pocl(1);
     unpack_compiled(key, order.substr(std::min(key.size() + 1, order.size())));
-    return CompileOrder{options, static_cast<Compilation>(std::atoi(argv[of_compilation]))};
+    return options;
 }
 
 void deliver_compiled(const std::optional<std::string>& packed) {

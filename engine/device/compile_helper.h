@@ -16,9 +16,10 @@ namespace sahl {
 /// and its temporary files are in the other's folder.
 class CompileHelper {
 public:
-    /// Has /proc/self/exe compile for `device`, see take_compile_order(). `built`: the program of that `key`
-    /// as PoCL has built it, packed (pocl_programs.h). Nothing if no process can be started.
-    static std::unique_ptr<CompileHelper> start(const Device& device, Compilation compilation,
+    /// Has /proc/self/exe compile for `device`, see take_compile_order(). `options`: in the place of
+    /// DeviceOptions::build_options. `built`: the program of that `key` as PoCL has built it, packed
+    /// (pocl_programs.h). Nothing if no process can be started.
+    static std::unique_ptr<CompileHelper> start(const Device& device, const std::string& options,
                                                 const std::string& key, const std::string& built);
     /// Ends it.
     ~CompileHelper();
@@ -37,15 +38,9 @@ private:
     int output_;
 };
 
-/// What a CompileHelper compiles for.
-struct CompileOrder {
-    DeviceOptions device;
-    Compilation compilation;
-};
-
-/// That of this process, if it is a CompileHelper by its arguments. Puts the program where PoCL finds it when
-/// it is built.
-std::optional<CompileOrder> take_compile_order(int argc, char** argv);
+/// The device to compile for, if this process is a CompileHelper by its arguments. Puts the program where
+/// PoCL finds it when it is built.
+std::optional<DeviceOptions> take_compile_order(int argc, char** argv);
 
 /// Hands over what a CompileHelper has compiled, and ends its process.
 [[noreturn]] void deliver_compiled(const std::optional<std::string>& packed);

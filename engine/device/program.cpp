@@ -82,6 +82,9 @@ std::string cpu_model() {
     return model;
 }
 
+/// Of Compilation::quick, behind all others.
+constexpr const char* quick_option = "-cl-opt-disable";
+
 std::string cache_key(Device& device, const KernelSource& source, const std::string& options) {
     const DeviceInfo& info = device.info();
     return fmt::format(
@@ -132,7 +135,7 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
     std::shared_ptr<Program::Impl> impl(new Program::Impl{device, cache_key(device, source, options)});
     std::optional<CachedProgram> cached = load_program(impl->key);
     if (compilation == Compilation::quick && !cached && device.info().is_pocl) {
-        options += " -cl-opt-disable";
+        options += fmt::format(" {}", quick_option);
         impl->optimized = false;
         impl->key = cache_key(device, source, options);
         cached = load_program(impl->key);
@@ -143,8 +146,10 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
         const bool compiled = build_watched(impl->key, from_source);
         impl->from_cache = unpacked && !compiled;
         if (compiled && !beside.empty() && device.compiles_beside()) {
+            std::string of_helper = device.build_options();
+            if (!impl->optimized) of_helper += fmt::format("{}{}", of_helper.empty() ? "" : " ", quick_option);
             impl->helper =
-                CompileHelper::start(device, compilation, impl->key, pack_compiled(impl->key).value_or(""));
+                CompileHelper::start(device, of_helper, impl->key, pack_compiled(impl->key).value_or(""));
             impl->beside = beside;
         }
     } else {

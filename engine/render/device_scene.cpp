@@ -22,7 +22,7 @@ public:
         const std::size_t bytes = values.size() * sizeof(typename Vector::value_type);
         Buffer buffer(device_, bytes, std::move(name));
         buffer.write(std::span(std::as_const(values)));
-        values = {};
+        values = Vector();  // = {} would keep the memory
         host_.give_back(bytes);
         return buffer;
     }

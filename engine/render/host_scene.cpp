@@ -159,7 +159,7 @@ HostScene make_host_scene(const Scene& scene, BuildQuality quality) {
     primitives.resize(world_primitive_count(scene));
     primitives.reserve(most_references(primitives.size() + placed_boxes.size()));
     primitives.insert(primitives.end(), placed_boxes.begin(), placed_boxes.end());
-    placed_boxes = {};
+    placed_boxes = std::vector<BuildPrimitive>();  // = {} would keep the memory
     const bool empty = primitives.empty();
     out.bvh = build_bvh(std::move(primitives), corners, quality);
     const std::vector<std::uint32_t> roots = trees.append_to(out.bvh);

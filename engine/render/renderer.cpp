@@ -21,6 +21,9 @@ namespace {
 
 constexpr std::uint64_t least_explained_batch = 1024;  // rays
 
+/// Quick kernels trace them in a fifth of a second; to compile optimized ones takes seconds longer.
+constexpr std::uint64_t most_rays_of_quick_kernels = 1U << 18U;
+
 /// The pixels that `settings` ask for.
 Crop crop_of(const RenderSettings& settings) {
     const Resolution& resolution = settings.resolution;
@@ -45,8 +48,11 @@ std::uint64_t pixel_count(const Crop& crop) {
 
 }  // namespace
 
-Compilation compilation_for(std::uint64_t samples) {
-    return samples <= RenderSettings().ray_budget ? Compilation::quick : Compilation::optimized;
+Compilation compilation_for(const MemoryRequest& job, std::size_t images) {
+    // A ray and its shadow rays a generation: of most scenes fewer, of glass in glass more.
+    const std::uint64_t rays =
+        job.samples * images * (1U + job.light_count) * static_cast<unsigned>(1 + job.depth);
+    return rays <= most_rays_of_quick_kernels ? Compilation::quick : Compilation::optimized;
 }
 
 struct Renderer::Impl {
@@ -58,7 +64,7 @@ struct Renderer::Impl {
           kernels(on.traversal(), program),
           incoherent(on, program, kernels) {
         if (!program.is_optimized())
-            log_debug("quick kernels, which take less time to compile; 'sahl warm' compiles optimized ones");
+            log_debug("kernels that are not optimized, for a few rays; 'sahl warm' compiles optimized ones");
         test_before_first_use(on, program, kernels);
         device_scene = make_device_scene(on, scene, job, quality);
     }

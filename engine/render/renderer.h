@@ -10,7 +10,6 @@
 
 #include "engine/accel/bvh.h"
 #include "engine/device/device.h"
-#include "engine/device/program.h"
 #include "engine/film/aov.h"
 #include "engine/film/film.h"
 #include "engine/render/explanation.h"
@@ -45,9 +44,9 @@ struct Checkpoints {
     std::function<void(std::uint64_t samples)> save{};
 };
 
-/// For the kernels of a job of so many camera samples in all: those of one batch are not worth optimizing
-/// for.
-Compilation compilation_for(std::uint64_t samples);
+/// For the kernels of `images` images that ask for as much as `job`: quick ones if they have no more rays
+/// than those trace in the blink of an eye.
+Compilation compilation_for(const MemoryRequest& job, std::size_t images = 1);
 
 /// A scene made ready for a device: lowered, its BVH built, uploaded, kernels compiled.
 class Renderer {

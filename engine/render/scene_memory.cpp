@@ -78,7 +78,6 @@ SceneMemory bound_scene_memory(const Scene& scene) {
                                copies * (memory.nodes + references * sizeof(BvhLeaf));
     // The builder's primitives, the references of one tree and its binary nodes.
     const std::uint64_t builder = references * (2 * sizeof(BuildPrimitive) + sizeof(BinaryNode)) +
-                                  nodes * sizeof(int) +
                                   placed * (sizeof(PlacedGroup) + sizeof(BuildPrimitive));
     // Of the host's arrays one at a time is there on the device as well.
     memory.building =

@@ -1,7 +1,6 @@
 // The self-test by itself, before the first use of kernels.
 #pragma once
 
-#include "engine/device/compile_helper.h"
 #include "engine/device/program.h"
 #include "engine/render/launches.h"
 
@@ -14,6 +13,6 @@ void test_before_first_use(Device& device, Program& program, WavefrontKernels& k
 void test_before_first_use(Device& device, Program& program, Kernel& describe, WavefrontKernels& kernels);
 
 /// What the process of a CompileHelper does: compiles what build_wavefront_program() leaves to it, and ends.
-[[noreturn]] void compile_for_another_process(const CompileOrder& order);
+[[noreturn]] void compile_for_another_process(const DeviceOptions& options);
 
 }  // namespace sahl

@@ -13,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/core/host_steps.h"
 #include "engine/core/log.h"
+#include "engine/device/compile_helper.h"
 #include "engine/self_test/every_feature.h"
 #include "engine/self_test/first_use.h"
 #include "engine/self_test/kernel_tests.h"
@@ -128,9 +129,10 @@ void conclude(Device& device, Program& program, const SelfTestReport& report,
     if (const KernelTest* failed = report.failed()) {
         throw Error(
             ExitCode::device,
-            fmt::format("device {} ({}, driver {}) computes wrongly: kernel {}, {}; update its driver "
+            fmt::format("device {} ({}, driver {}) computes wrongly: kernel {}{}, {}; update its driver "
                         "or choose another device with --device ('sahl devices --test' tests it again)",
-                        info.name, info.platform, info.driver, failed->kernel, failed->failure));
+                        info.name, info.platform, info.driver, failed->kernel,
+                        program.is_optimized() ? "" : ", not optimized", failed->failure));
     }
     program.record_self_test();
     std::uint64_t checked = 0;
@@ -180,11 +182,11 @@ void test_before_first_use(Device& device, Program& program, WavefrontKernels& k
     conclude(device, program, test_wavefront(bench, test_waves()), start);
 }
 
-void compile_for_another_process(const CompileOrder& order) {
+void compile_for_another_process(const DeviceOptions& options) {
     std::optional<std::string> compiled;
     try {
-        Device device(order.device);
-        Program program = build_wavefront_program(device, order.compilation);
+        Device device(options);
+        Program program = build_wavefront_program(device);
         WavefrontKernels kernels(device.traversal(), program);
         Bench bench(device, kernels);
         // A hit of which nothing becomes: PoCL compiles what is launched, in this order.

@@ -1,4 +1,6 @@
 // The real program's first start, without a program cache: kernels are compiled by two processes.
+#include <OpenImageIO/imageio.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "engine/film/image_io.h"
+#include "engine/render/renderer.h"
 #include "tests/cli/sahl_program.h"
 #include "tests/support/kernel_runner.h"
 
@@ -38,6 +41,16 @@ struct FirstStart {
 
 std::vector<std::string> render_arguments() {
     return {"render", scene_file("cli_mirrors.nff"), "-v", "-o", "a.exr"};
+}
+
+/// All channels of the image, AOVs too.
+std::vector<float> all_channels(const fs::path& path) {
+    const auto input = OIIO::ImageInput::open(path.string());
+    REQUIRE(input);
+    const OIIO::ImageSpec& spec = input->spec();
+    std::vector<float> values(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+    REQUIRE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()));
+    return values;
 }
 
 /// The helper of `process`, as soon as it works for it.
@@ -76,26 +89,51 @@ TEST_CASE("first start: kernels that another process compiles are tested, counte
     CHECK(images[0] == images[1]);
 }
 
-TEST_CASE("first start: a small image has quick kernels, unless there are optimized ones: the same bits",
-          "[cli]") {
+TEST_CASE(
+    "first start: small images have kernels that are not optimized, unless others are cached: the same bits",
+    "[cli]") {
+    constexpr const char* says_so = "kernels that are not optimized";
     const FirstStart start;
-    const auto render = [&](const char* size) {
-        const ProcessResult result = start.run({"render", scene_file("cli_mirrors.nff"), "-v", "--size", size,
-                                                "--aov", "Z,cost.nodes", "-o", "a.exr"});
+    const auto render = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = render_arguments();
+        arguments.insert(arguments.end(), {"--aov", "all"});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProcessResult result = start.run(arguments);
         INFO(result.err);
         CHECK(result.status == 0);
         return result.err;
     };
-    const std::string first = render("128x96");
-    CHECK(contains(first, "quick kernels"));
+    const std::string first = render({});
+    CHECK(contains(first, says_so));
     CHECK(contains(first, "of 7 kernels are right"));
-    const std::vector<float> pixels = read_image(start.folder / "a.exr").pixels;
-    const std::string second = render("128x96");
-    CHECK(contains(second, "quick kernels"));
+    const bool has_helper = std::thread::hardware_concurrency() > 1;
+    CHECK(contains(first, "4 kernels were compiled by another process") == has_helper);
+    const std::vector<float> values = all_channels(start.folder / "a.exr");
+    const std::string second = render({});
+    CHECK(contains(second, says_so));
     CHECK_FALSE(contains(second, "are right"));  // it is known
-    CHECK_FALSE(contains(render("256x192"), "quick kernels"));
-    CHECK_FALSE(contains(render("128x96"), "quick kernels"));
-    CHECK(read_image(start.folder / "a.exr").pixels == pixels);
+    CHECK(
+        contains(start.run({"explain", scene_file("cli_mirrors.nff"), "--pixel", "1,2", "-v"}).err, says_so));
+
+    CHECK_FALSE(contains(render({"--size", "400x300", "-o", "large.exr"}), says_so));
+    CHECK_FALSE(contains(render({}), says_so));
+    CHECK(all_channels(start.folder / "a.exr") == values);
+}
+
+TEST_CASE(
+    "first start: a job's samples, generations, lights and images decide whether it is worth optimizing") {
+    MemoryRequest job;
+    job.samples = 1U << 15U;
+    job.depth = 3;
+    job.light_count = 1;
+    CHECK(compilation_for(job) == Compilation::quick);
+    CHECK(compilation_for(job, 2) == Compilation::optimized);
+    ++job.samples;
+    CHECK(compilation_for(job) == Compilation::optimized);
+    job.depth = 2;
+    CHECK(compilation_for(job) == Compilation::quick);
+    job.light_count = 2;
+    CHECK(compilation_for(job) == Compilation::optimized);
 }
 
 TEST_CASE("first start: if the other process ends early, this one compiles all", "[cli]") {

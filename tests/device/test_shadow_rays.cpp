@@ -70,6 +70,17 @@ std::vector<TestLitPoint> lit_points(Random& random, const Soup& soup, std::size
     return points;
 }
 
+/// Whether the point is the apex of the surface that it is on, as a float has it: a line through there meets
+/// the cone twice at once, or just not.
+bool is_apex(const Soup& soup, const TestLitPoint& point, double size) {
+    return std::any_of(soup.targets.begin(), soup.targets.end(), [&](const Target& target) {
+        return target.id == point.exclude && target.instance == point.exclude_instance && !target.flat &&
+               std::any_of(target.tips.begin(), target.tips.end(), [&](const dvec3& tip) {
+                   return glm::distance(tip, dvec3(point.position)) < 1e-6 * size;
+               });
+    });
+}
+
 /// What light `light` sends to `point` according to the oracle; negative where single precision may see
 /// something else.
 double expected(const oracle::Oracle& oracle, const std::vector<oracle::PlacedShape>& shapes,
@@ -118,6 +129,7 @@ TEST_CASE("shadow rays of every traversal let the same light through, and the or
             // Far away single precision places points too roughly.
             if (name == "large instances far away") continue;
             for (std::size_t i = 0; i < points.size(); i += 7) {
+                if (is_apex(soup, points[i], size)) continue;
                 for (std::size_t l = 0; l < light_count; ++l) {
                     const double wanted = expected(oracle, shapes, points[i], l, size);
                     if (wanted < 0) continue;

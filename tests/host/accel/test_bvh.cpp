@@ -22,6 +22,11 @@ void check_tree(const std::vector<BuildPrimitive>& primitives) {
     CHECK(bvh.statistics.primitives == primitives.size());
     CHECK(bvh.statistics.nodes == bvh.nodes.size());
     CHECK(bvh.statistics.leaves == bvh.leaves.size());
+    std::size_t references = 0;
+    for (const BvhLeaf& leaf : bvh.leaves) references += leaf.count;
+    CHECK(bvh.statistics.references == references);
+    CHECK(bvh.statistics.leaf_fill ==
+          Approx(static_cast<double>(references) / static_cast<double>(bvh.leaves.size())));
     CHECK(bvh.statistics.depth == facts.depth);
     CHECK(bvh.statistics.sah_cost == Approx(facts.sah_cost).epsilon(1e-9));
 }

@@ -23,7 +23,10 @@ void check_tree(const TriangleSet& set, BuildQuality quality) {
     CHECK(bvh.statistics.depth == facts.depth);
     CHECK(bvh.statistics.sah_cost == Approx(facts.sah_cost).epsilon(1e-9));
     CHECK(bvh.statistics.primitives == set.primitives.size());
-    CHECK(bvh.statistics.references <= most_references(set.primitives.size()));
+    std::size_t references = 0;
+    for (const BvhLeaf& leaf : bvh.leaves) references += leaf.count;
+    CHECK(bvh.statistics.references == references);
+    CHECK(references <= most_references(set.primitives.size()));
     CHECK(bvh.nodes.size() <= most_nodes(set.primitives.size()));
 }
 
