@@ -100,7 +100,7 @@ const std::vector<Fault> faults{
      "front ? SAHL_ID_BACK_ONLY : 0u"},
     {"intersect", "traverse_packet.h", "groups_that_reach(entries[size]",
      "groups_that_reach(2.0f * entries[size]"},
-    {"shadow", "packet.h", "backward ? lo - e : hi + e", "backward ? hi + e : lo - e"},
+    {"shadow", "packet.h", "backward ? lo - margin : hi + margin", "backward ? hi + margin : lo - margin"},
     {"intersect", "traverse_packet.h", "(intg)((int)i + 1)", "(intg)((int)i + 2)"},
     {"intersect", "instance.h", "instance_element(instance, 2, 3)", "(real)0"},
     {"shade", "material.h", "light = mul(diffuse, SAHL_MAX(cosine, (floatv)(0.0f)))",
