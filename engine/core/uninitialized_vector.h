@@ -12,7 +12,7 @@ namespace sahl {
 template <class T>
 struct UninitializedAllocator : std::allocator<T> {
     template <class Other>
-    struct rebind {
+    struct rebind {  // NOLINT(readability-identifier-naming): the standard's names
         using other = UninitializedAllocator<Other>;  // NOLINT(readability-identifier-naming)
     };
 

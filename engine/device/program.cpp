@@ -147,7 +147,8 @@ std::shared_ptr<Program::Impl> build(Device& device, const KernelSource& source,
         impl->from_cache = unpacked && !compiled;
         if (compiled && !beside.empty() && device.compiles_beside()) {
             std::string of_helper = device.build_options();
-            if (!impl->optimized) of_helper += fmt::format("{}{}", of_helper.empty() ? "" : " ", quick_option);
+            if (!impl->optimized)
+                of_helper += fmt::format("{}{}", of_helper.empty() ? "" : " ", quick_option);
             impl->helper =
                 CompileHelper::start(device, of_helper, impl->key, pack_compiled(impl->key).value_or(""));
             impl->beside = beside;

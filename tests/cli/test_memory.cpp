@@ -171,7 +171,7 @@ TEST_CASE("memory: threads and caches change no bit of the image", "[cli]") {
     const std::string scene = std::string(std::getenv("SAHL_SOURCE_DIR")) + "/scenes/transforms.json";
     const auto pixels = [&](const std::vector<std::string>& more, const std::string& cache) {
         std::vector<std::string> arguments{"render", scene, "--size", "60x40",        "--spp",
-                                           "32",      "-o",  "a.exr",  "--pixel-type", "float"};
+                                           "32",     "-o",  "a.exr",  "--pixel-type", "float"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         ProcessOptions options;
         options.working_directory = folder.path();
