@@ -24,8 +24,7 @@ kernel void describe(const global DevicePrimitive* primitives, const global floa
             const realv3 d = load_soa3v_real(rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
             const realv3 origin = load_soa3v_real(rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
             const floatv3 place = load_soa3v(hits, SAHL_HIT_T, capacity, i);
-            const Surfaces surfaces =
-                surfaces_at(&shapes, hit, instance, primitive, origin, d, place.x, place.y, place.z);
+            const Surfaces surfaces = surfaces_at(&shapes, hit, instance, primitive, &origin, &d, &place);
             const realv3 facing = where(dotv(surfaces.ns, d) > (real)0, negated(surfaces.ns), surfaces.ns);
             depth = where(hit, convert_floatv(surfaces.t * dotv(d, forward)), depth);
             material_ids = hit ? surfaces.material : material_ids;

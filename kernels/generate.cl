@@ -10,7 +10,7 @@ kernel void generate(const CameraConstants camera, const WaveConstants wave, glo
     SAHL_FOR_EACH_GROUP(i, wave.count) {
         const CropPixels pixels = crop_pixels(&wave, first, i);
         const CameraSamples samples = camera_samples(&wave, first, i, &pixels);
-        store_rays(rays, ray_ids, capacity, i, same3(round3(eye)), same3_real(eye),
+        store_rays(all_lanes(), rays, ray_ids, capacity, i, same3(round3(eye)), same3_real(eye),
                    camera_directions(&camera, &samples), (uintv)(SAHL_NO_PRIMITIVE), (uintv)(SAHL_WORLD),
                    same3((float3)(1.0f)), pixels.y * wave.crop_width + pixels.x);
     }

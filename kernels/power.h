@@ -5,33 +5,36 @@
 
 #include "kernels/lanes.h"
 
+// The polynomials interpolate at Chebyshev's nodes, and are summed up in pairs, as Estrin (1960) does: each
+// step waits for the one before.
+
 /// log2 of normal x > 0, relative error below 3e-7: the mantissa is brought to
-/// [sqrt(1/2), sqrt(2)) and log m = 2 atanh((m - 1)/(m + 1)) summed to the ninth power.
+/// [sqrt(1/2), sqrt(2)), and log m = 2 atanh s with s = (m - 1)/(m + 1).
 static inline floatv log2_positive(floatv x) {
     intv bits = as_intv(x);
     intv exponent = (bits - 0x3f3504f3) >> 23;
     floatv m = as_floatv(bits - (exponent << 23));
     floatv s = (m - 1.0f) / (m + 1.0f);
-    floatv s2 = s * s;
-    floatv series = fma(s2, (floatv)(1.0f / 9.0f), (floatv)(1.0f / 7.0f));
-    series = fma(s2, series, (floatv)(1.0f / 5.0f));
-    series = fma(s2, series, (floatv)(1.0f / 3.0f));
-    series = fma(s2, series, (floatv)(1.0f));
-    return fma(2.88539008f * s, series, convert_floatv(exponent));
+    floatv s2 = s * s, s4 = s2 * s2;
+    floatv low = fma(s2, (floatv)(0.333333425f), (floatv)(1.0f));
+    floatv high = fma(s2, (floatv)(0.147899747f), (floatv)(0.199943903f));
+    return fma(2.88539008f * s, fma(s4, high, low), convert_floatv(exponent));
 }
 
 /// 2^y for y <= 127, relative error below 2e-7; 0 where the result would be no normal number.
 static inline floatv exp2_bounded(floatv y) {
-    floatv whole = floor(y + 0.5f);
-    floatv f = (y - whole) * 0.693147181f;
-    floatv p = fma(f, (floatv)(1.0f / 5040.0f), (floatv)(1.0f / 720.0f));
-    p = fma(f, p, (floatv)(1.0f / 120.0f));
-    p = fma(f, p, (floatv)(1.0f / 24.0f));
-    p = fma(f, p, (floatv)(1.0f / 6.0f));
-    p = fma(f, p, (floatv)(0.5f));
-    p = fma(f, p, (floatv)(1.0f));
-    p = fma(f, p, (floatv)(1.0f));
-    floatv scale = as_floatv((convert_intv(SAHL_MAX(whole, (floatv)(-127.0f))) + 127) << 23);
+    // Added to y it leaves a whole number, in the lowest bits.
+    const float whole = 0x1.8p23f;
+    floatv bounded = SAHL_MAX(y, (floatv)(-127.0f));
+    floatv shifted = bounded + whole;
+    floatv f = bounded - (shifted - whole);
+    floatv f2 = f * f, f4 = f2 * f2;
+    floatv low = fma(f, (floatv)(0.693147188f), (floatv)(1.0f));
+    floatv middle = fma(f, (floatv)(0.0555035711f), (floatv)(0.240226508f));
+    floatv high = fma(f, (floatv)(0.00133908634f), (floatv)(0.00961808256f));
+    high = fma(f2, (floatv)(0.000154531629f), high);
+    floatv p = fma(f4, high, fma(f2, middle, low));
+    floatv scale = as_floatv((as_intv(shifted) << 23) + (127 << 23));
     return where(y < -126.0f, (floatv)(0.0f), p * scale);
 }
 

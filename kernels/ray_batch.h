@@ -76,20 +76,50 @@ static inline void store_hit(global float* hits, global uint* hit_ids, uint capa
     hit_ids[(size_t)SAHL_HIT_INSTANCE * capacity + i] = hit->instance;
 }
 
+/// Lanes of a group that are stored: those of `mask`, or all where `alone`, as others hold nothing yet.
+typedef struct {
+    intv mask;
+    bool alone;
+} StoredLanes;
+
+static inline StoredLanes all_lanes(void) { return (StoredLanes){(intv)(-1), true}; }
+
+SAHL_OVERLOAD void store_lanes(StoredLanes lanes, global float* p, floatv v) {
+    vstorev(lanes.alone ? v : where(lanes.mask, v, vloadv(p)), p);
+}
+SAHL_OVERLOAD void store_lanes(StoredLanes lanes, global uint* p, uintv v) {
+    vstorev(lanes.alone ? v : (lanes.mask ? v : vloadv(p)), p);
+}
+
+SAHL_INLINE void store_soa3_lanes(StoredLanes lanes, global float* arrays, uint first, uint capacity, uint i,
+                                  floatv3 v) {
+    global float* p = arrays + (size_t)first * capacity + i;
+    store_lanes(lanes, p, v.x);
+    store_lanes(lanes, p + capacity, v.y);
+    store_lanes(lanes, p + 2u * (size_t)capacity, v.z);
+}
+
+static inline void store_id_lanes(StoredLanes lanes, global uint* arrays, uint array, uint capacity, uint i,
+                                  uintv ids) {
+    store_lanes(lanes, arrays + (size_t)array * capacity + i, ids);
+}
+
 /// Stores rays that start at `origin`, exactly, and are traced from `traced_origin`. `start`: the
 /// primitives that they start on, with SAHL_RAY_ATTENUATED.
-static inline void store_rays(global float* rays, global uint* ray_ids, uint capacity, uint i,
-                              floatv3 traced_origin, realv3 origin, realv3 direction, uintv start,
-                              uintv instance, floatv3 weight, uintv pixel) {
+SAHL_INLINE void store_rays(StoredLanes lanes, global float* rays, global uint* ray_ids, uint capacity,
+                            uint i, floatv3 traced_origin, realv3 origin, realv3 direction, uintv start,
+                            uintv instance, floatv3 weight, uintv pixel) {
     floatv3 traced_direction = roundv(direction);
-    store_soa3v(rays, SAHL_RAY_ORIGIN, capacity, i, traced_origin);
-    store_soa3v(rays, SAHL_RAY_ORIGIN_LOW, capacity, i, roundv(sub(origin, widen(traced_origin))));
-    store_soa3v(rays, SAHL_RAY_DIRECTION, capacity, i, traced_direction);
-    store_soa3v(rays, SAHL_RAY_DIRECTION_LOW, capacity, i, roundv(sub(direction, widen(traced_direction))));
-    store_soa3v(rays, SAHL_RAY_WEIGHT, capacity, i, weight);
-    store_idsv(ray_ids, SAHL_RAY_PIXEL, capacity, i, pixel);
-    store_idsv(ray_ids, SAHL_RAY_EXCLUDE, capacity, i, start);
-    store_idsv(ray_ids, SAHL_RAY_INSTANCE, capacity, i, instance);
+    floatv3 origin_low = roundv(sub(origin, widen(traced_origin)));
+    floatv3 direction_low = roundv(sub(direction, widen(traced_direction)));
+    store_soa3_lanes(lanes, rays, SAHL_RAY_ORIGIN, capacity, i, traced_origin);
+    store_soa3_lanes(lanes, rays, SAHL_RAY_ORIGIN_LOW, capacity, i, origin_low);
+    store_soa3_lanes(lanes, rays, SAHL_RAY_DIRECTION, capacity, i, traced_direction);
+    store_soa3_lanes(lanes, rays, SAHL_RAY_DIRECTION_LOW, capacity, i, direction_low);
+    store_soa3_lanes(lanes, rays, SAHL_RAY_WEIGHT, capacity, i, weight);
+    store_id_lanes(lanes, ray_ids, SAHL_RAY_PIXEL, capacity, i, pixel);
+    store_id_lanes(lanes, ray_ids, SAHL_RAY_EXCLUDE, capacity, i, start);
+    store_id_lanes(lanes, ray_ids, SAHL_RAY_INSTANCE, capacity, i, instance);
 }
 
 #endif

@@ -32,11 +32,11 @@ typedef struct {
     uint capacity, count, spawn;
 } ShadeWork;
 
-/// The light of all lamps on `lanes`, each as if nothing were in between, into the shadow light from i on;
-/// `first`: other lanes hold nothing yet. Returns how many bring any: their shadow rays are to be traced.
+/// The light of all lamps on `lanes`, each as if nothing were in between, into the shadow light from i on.
+/// Returns how many bring any: their shadow rays are to be traced.
 static inline intv shade_lights(const ShadeWork* work, uint i, const global DeviceMaterial* material,
                                 const SurfaceColors* colors, floatv3 position, floatv3 ns, floatv3 wo,
-                                floatv3 weight, intv lanes, bool first) {
+                                floatv3 weight, StoredLanes lanes) {
     intv shadow_rays = (intv)(0);
     for (uint l = 0; l < work->scene->light_count; ++l) {
         const global DeviceLight* light = work->lights + l;
@@ -49,10 +49,7 @@ static inline intv shade_lights(const ShadeWork* work, uint i, const global Devi
                               arriving_light(light, wi, distance));
         brought = mul(brought, weight);
         shadow_rays -= nonzerov(brought);
-        if (!first) {
-            brought = where(lanes, brought, load_soa3v(work->shadow_light, 3u * l, work->capacity, i));
-        }
-        store_soa3v(work->shadow_light, 3u * l, work->capacity, i, brought);
+        store_soa3_lanes(lanes, work->shadow_light, 3u * l, work->capacity, i, brought);
     }
     return shadow_rays;
 }
@@ -126,62 +123,54 @@ SAHL_NOINLINE void shade_group(const ShadeWork* work, uint i) {
     const uintv primitive = borrowed(hit, hit_primitive);
     const realv3 d = load_soa3v_real(work->rays, SAHL_RAY_DIRECTION, SAHL_RAY_DIRECTION_LOW, capacity, i);
     const realv3 origin = load_soa3v_real(work->rays, SAHL_RAY_ORIGIN, SAHL_RAY_ORIGIN_LOW, capacity, i);
-    const Surfaces surfaces =
-        surfaces_at(&work->shapes, hit, instance, primitive, origin, d, place.x, place.y, place.z);
+    const Surfaces surfaces = surfaces_at(&work->shapes, hit, instance, primitive, &origin, &d, &place);
     const realv3 facing = where(dotv(surfaces.ns, d) > (real)0, negated(surfaces.ns), surfaces.ns);
     const floatv3 position = roundv(surfaces.position);
     const floatv3 offset = mul(roundv(surfaces.ng), surfaces.offset);
 
+    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i, position);
+    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
+
     floatv3 emitted = background;
-    Scattering sent = {d, d, same3((float3)(0.0f)), same3((float3)(0.0f))};
-    uintv reflected_start = primitive;
-    intv shadow_rays = (intv)(0);
+    uintv outcomes = (uintv)(0u);
     for (uint rest = lane_bits(hit); rest != 0u;) {
         const uint material_id = ((const uint*)&surfaces.material)[lowest_lane(rest)];
         const global DeviceMaterial* material = work->materials + material_id;
-        const intv lanes = hit & (surfaces.material == material_id);
-        const bool first = rest == lane_bits(hit);
-        rest &= ~lane_bits(lanes);
+        const StoredLanes lanes = {hit & (surfaces.material == material_id), rest == lane_bits(hit)};
+        rest &= ~lane_bits(lanes.mask);
         SAHL_COUNT_LANES(&work->shapes, SAHL_EMISSION_FLOP);
         const realv3 ns = material->flags & SAHL_MATERIAL_TWO_SIDED ? facing : surfaces.ns;
         const SurfaceColors colors =
             surface_colors(&work->shapes, material, work->textures, &surfaces, primitive);
-        emitted = where(lanes, mul(weight, colors.emitted), emitted);
-        shadow_rays += lanes & shade_lights(work, i, material, &colors, position, roundv(ns),
-                                            roundv(negated(d)), weight, lanes, first);
+        emitted = where(lanes.mask, mul(weight, colors.emitted), emitted);
+        const intv shadow_rays =
+            shade_lights(work, i, material, &colors, position, roundv(ns), roundv(negated(d)), weight, lanes);
+        uintv outcome = as_uintv(shadow_rays) * SAHL_OUTCOME_SHADOW_RAY;
         if (work->spawn) {
             const Scattering s = scatter(material, colors.reflection, &surfaces, ns, facing, d);
-            SAHL_COUNT_LANES(&work->shapes, scattering_flop(material, lane_bits(nonzerov(s.kr)) != 0u));
-            sent.reflected = where(lanes, s.reflected, sent.reflected);
-            sent.transmitted = where(lanes, s.transmitted, sent.transmitted);
-            sent.kr = where(lanes, s.kr, sent.kr);
-            sent.kt = where(lanes, s.kt, sent.kt);
-            if (material->flags & SAHL_MATERIAL_ATTENUATES) {
-                reflected_start |= as_uintv(lanes) & SAHL_RAY_ATTENUATED;
+            const intv reflects = nonzerov(s.kr), transmits = nonzerov(s.kt);
+            SAHL_COUNT_LANES(&work->shapes, scattering_flop(material, lane_bits(reflects) != 0u));
+            outcome |= (as_uintv(reflects) & SAHL_OUTCOME_REFLECTED) |
+                       (as_uintv(transmits) & SAHL_OUTCOME_TRANSMITTED);
+            if (lane_bits(reflects & lanes.mask) != 0u) {
+                SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
+                const uint attenuated = material->flags & SAHL_MATERIAL_ATTENUATES ? SAHL_RAY_ATTENUATED : 0u;
+                store_rays(lanes, work->children, work->child_ids, capacity, i,
+                           offset_origins(position, offset, roundv(s.reflected)), surfaces.position,
+                           s.reflected, primitive | attenuated, instance, mul(weight, s.kr), pixel);
+            }
+            if (lane_bits(transmits & lanes.mask) != 0u) {
+                SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
+                store_rays(lanes, work->children + (size_t)SAHL_RAY_FLOATS * capacity,
+                           work->child_ids + (size_t)SAHL_RAY_UINTS * capacity, capacity, i,
+                           offset_origins(position, offset, roundv(s.transmitted)), surfaces.position,
+                           s.transmitted, primitive, instance, mul(weight, s.kt), pixel);
             }
         }
+        outcomes = lanes.mask ? outcome : outcomes;
     }
-
     store_soa3v(work->contributions, 0u, capacity, i, emitted);
-    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_POSITION, capacity, i, position);
-    store_soa3v(work->shadow_surfaces, SAHL_SURFACE_OFFSET, capacity, i, offset);
-    const intv reflects = hit & nonzerov(sent.kr), transmits = hit & nonzerov(sent.kt);
-    if (lane_bits(reflects) != 0u) {
-        SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
-        store_rays(work->children, work->child_ids, capacity, i,
-                   offset_origins(position, offset, roundv(sent.reflected)), surfaces.position,
-                   sent.reflected, reflected_start, instance, mul(weight, sent.kr), pixel);
-    }
-    if (lane_bits(transmits) != 0u) {
-        SAHL_COUNT_LANES(&work->shapes, SAHL_CHILD_FLOP);
-        store_rays(work->children + (size_t)SAHL_RAY_FLOATS * capacity,
-                   work->child_ids + (size_t)SAHL_RAY_UINTS * capacity, capacity, i,
-                   offset_origins(position, offset, roundv(sent.transmitted)), surfaces.position,
-                   sent.transmitted, primitive, instance, mul(weight, sent.kt), pixel);
-    }
-    vstorev(as_uintv(shadow_rays) * SAHL_OUTCOME_SHADOW_RAY | (as_uintv(reflects) & SAHL_OUTCOME_REFLECTED) |
-                (as_uintv(transmits) & SAHL_OUTCOME_TRANSMITTED),
-            work->outcomes + i);
+    vstorev(outcomes, work->outcomes + i);
 }
 
 kernel void shade(const global DevicePrimitive* primitives, const global float* shape_data,

@@ -46,7 +46,7 @@ static inline uint surface_flop(uint present) {
 /// Of a lamp's light on a material; `shines`: which has highlights.
 static inline uint light_flop(const global DeviceLight* light, const global DeviceMaterial* material,
                               bool shines) {
-    const uint power = 34u;
+    const uint power = 33u;
     uint flop = 22u;
     flop += light->kind == SAHL_LIGHT_DIRECTIONAL ? 0u : 11u;
     flop += light->kind == SAHL_LIGHT_SPOT ? 14u : 0u;

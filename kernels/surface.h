@@ -303,15 +303,21 @@ static inline PrimitiveLanes load_primitives(const global DevicePrimitive* primi
     return (PrimitiveLanes){as_uintv(words[0]), as_uintv(words[1]), as_uintv(words[2]), as_uintv(words[3])};
 }
 
+/// Adds the surfaces of the lanes `these`; `*missing`: those of which there is none yet.
+static inline void add_surfaces(Surfaces* s, intv these, Surfaces of_these, intv* missing) {
+    // Mostly neighbours hit the same kind.
+    *s = lane_bits(~*missing) == 0u ? of_these : where_surfaces(these, of_these, *s);
+    *missing &= ~these;
+}
+
 /// surfaces_at() in the space of the primitives, without the position.
-static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, realv3 origin,
-                                         realv3 direction, floatv t, floatv u, floatv v) {
+SAHL_NOINLINE void surfaces_of_kinds(const Shapes* shapes, uintv primitive, const realv3* origin,
+                                     const realv3* direction, const floatv3* place, Surfaces* s) {
     const PrimitiveLanes of = load_primitives(shapes->primitives, primitive);
     const uintv kind = of.kind, data = of.data;
     const uint present = kinds_present(kind);
-    const realv t_real = convert_realv(t);
-    Surfaces s = {};
-    intv others = (intv)(-1);
+    const realv t = convert_realv(place->x);
+    intv missing = (intv)(-1);
     if (present & 1u << SAHL_KIND_TRIANGLE) {
         const intv these = kind == SAHL_KIND_TRIANGLE;
         const intv smooth = these & ((of.flags & SAHL_PRIMITIVE_SMOOTH) != 0u);
@@ -319,40 +325,39 @@ static inline Surfaces surfaces_of_kinds(const Shapes* shapes, uintv primitive, 
         const LanePlaces vertices = places(shapes->shape_data, at);
         const LanePlaces normals = places(shapes->shape_data, smooth ? at + 9u : at);
         SAHL_COUNT_LANES(shapes, lane_bits(smooth) != 0u ? SAHL_SMOOTH_FLOP : 0u);
-        s = triangle_surfaces(&vertices, &normals, smooth, origin, direction, u, v);
-        others &= ~these;
+        add_surfaces(s, these,
+                     triangle_surfaces(&vertices, &normals, smooth, *origin, *direction, place->y, place->z),
+                     &missing);
     }
     if (present & 1u << SAHL_KIND_POLYGON) {
         const intv these = kind == SAHL_KIND_POLYGON;
         const LanePlaces at = places(shapes->shape_data, borrowed(these, data));
-        s = where_surfaces(these, polygon_surfaces(&at, origin, direction), s);
-        others &= ~these;
+        add_surfaces(s, these, polygon_surfaces(&at, *origin, *direction), &missing);
     }
     if (present & 1u << SAHL_KIND_SPHERE) {
         const intv these = kind == SAHL_KIND_SPHERE;
         const LanePlaces at = places(shapes->shape_data, borrowed(these, data));
-        s = where_surfaces(these, sphere_surfaces(&at, origin, direction, t_real), s);
-        others &= ~these;
+        add_surfaces(s, these, sphere_surfaces(&at, *origin, *direction, t), &missing);
     }
-    if (lane_bits(others) != 0u) {
-        const uintv offset = borrowed(others, data);
+    if (lane_bits(missing) != 0u) {
+        const uintv offset = borrowed(missing, data);
         const intv sloped = (kind == SAHL_KIND_CONE) | (kind == SAHL_KIND_SOLID_CONE);
         const LanePlaces at = places(shapes->shape_data, offset);
         const LanePlaces slopes = places(shapes->shape_data, sloped ? offset + 24u : offset);
-        s = where_surfaces(others, object_surfaces(kind, present, &at, &slopes, origin, direction, t_real),
-                           s);
+        add_surfaces(s, missing, object_surfaces(kind, present, &at, &slopes, *origin, *direction, t),
+                     &missing);
     }
     SAHL_COUNT_LANES(shapes, surface_flop(present));
-    s.material = of.material;
-    return s;
+    s->material = of.material;
 }
 
-/// The surfaces of `primitive` of `instance` where rays hit them at about `t`; u, v: barycentrics of
-/// triangles. Of the lanes `hit`, of which there is one at least.
+/// The surfaces of `primitive` of `instance` where rays hit them; `place`: about t, and u, v, the
+/// barycentrics of triangles. Of the lanes `hit`, of which there is one at least.
 static inline Surfaces surfaces_at(const Shapes* shapes, intv hit, uintv instance, uintv primitive,
-                                   realv3 origin, realv3 direction, floatv t, floatv u, floatv v) {
+                                   const realv3* origin, const realv3* direction, const floatv3* place) {
     const intv placed = hit & (instance != SAHL_WORLD);
-    realv3 o = origin, d = direction;
+    const realv3 *o = origin, *d = direction;
+    realv3 placed_origin, placed_direction;
     Placements rows;
     if (lane_bits(placed) != 0u) {
         const LanePlaces at =
@@ -360,13 +365,16 @@ static inline Surfaces surfaces_at(const Shapes* shapes, intv hit, uintv instanc
                    (borrowed(placed, instance) - 1u) * (uint)(sizeof(DeviceInstance) / sizeof(float)));
         rows = placements(&at);
         SAHL_COUNT_LANES(shapes, SAHL_PLACED_FLOP);
-        o = where(placed, group_from_world_points(&rows, origin), origin);
-        d = where(placed, group_from_world_vectors(&rows, direction), direction);
+        placed_origin = where(placed, group_from_world_points(&rows, *origin), *origin);
+        placed_direction = where(placed, group_from_world_vectors(&rows, *direction), *direction);
+        o = &placed_origin;
+        d = &placed_direction;
     }
-    Surfaces s = surfaces_of_kinds(shapes, borrowed(hit, primitive), o, d, t, u, v);
-    floatv of_hit = max_absv(roundv(add(o, mul(d, s.t))));
+    Surfaces s;
+    surfaces_of_kinds(shapes, borrowed(hit, primitive), o, d, place, &s);
+    floatv of_hit = max_absv(roundv(add(*o, mul(*d, s.t))));
     s.offset = SAHL_OFFSET_SCALE * SAHL_MAX(s.offset, of_hit);
-    s.position = add(origin, mul(direction, s.t));
+    s.position = add(*origin, mul(*direction, s.t));
     if (lane_bits(placed) != 0u) {
         // A step h along the world's normal takes h |n| along the group's: the same distance in roundings.
         realv3 n = world_from_group_normals(&rows, s.ng);

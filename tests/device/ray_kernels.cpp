@@ -123,7 +123,7 @@ kernel void surfaces(const global DevicePrimitive* primitives, const global floa
         const realv3 o = widen(load_soa3v(rays, SAHL_RAY_ORIGIN, capacity, i));
         const realv3 d = widen(load_soa3v(rays, SAHL_RAY_DIRECTION, capacity, i));
         const Surfaces s = surfaces_at(&shapes, hit, load_idsv(hit_ids, SAHL_HIT_INSTANCE, capacity, i),
-                                       borrowed(hit, primitive), o, d, place.x, place.y, place.z);
+                                       borrowed(hit, primitive), &o, &d, &place);
         store_parts(s.position, out, i, 19u, 0u, count);
         store_parts(s.ng, out, i, 19u, 6u, count);
         store_parts(s.ns, out, i, 19u, 12u, count);
